@@ -1,6 +1,5 @@
 #include "app/live/frame_loop.h"
 
-#include "app/live/held_frame.h"
 #include "app/live/part.h"
 #include "app/site/site_models.h"
 
@@ -314,20 +313,21 @@ void FrameLoop::finish(Output& output) {
 }
 
 void FrameLoop::drawAll(Time showTime) {
+    const Time began = clock_.now();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput_ = std::min(oldestInput_, input.at); });
     for (std::size_t i = 0; i < outputs_.size(); ++i) alone(outputs_[i], [&] { draw(i, showTime); });
     for (Output& output : outputs_) alone(output, [&] { finish(output); });
+    held_.drawn(clock_.now() - began);
 }
 
-// Waits with a finished frame, whose drawing took `took`. Returns whether it is to be drawn again,
-// for an input that came meanwhile.
-bool FrameLoop::awaitInput(Time due, Time took) {
+// Waits with a finished frame. Returns whether it is to be drawn again, for an input that came
+// meanwhile.
+bool FrameLoop::awaitInput(Time due) {
     const Output* const leads = leader();
     if (leads == nullptr || clock_.now() < aheadUntil_) return false;
-    const auto until = heldUntil(due, fromSeconds(1 / leads->display.refreshRate()), took);
-    if (!until || clock_.now() > *until) return false;
-    clock_.sleepUntil(*until);
-    return replica_.hasNews() && clock_.now() + took < due;
+    const auto until = held_.until(due, fromSeconds(1 / leads->display.refreshRate()));
+    if (until) clock_.sleepUntil(*until);
+    return until && replica_.hasNews() && clock_.now() < due - held_.again();
 }
 
 Time FrameLoop::refreshFrom(Time moment) {
@@ -344,14 +344,16 @@ Time FrameLoop::refreshFrom(Time moment) {
 void FrameLoop::begin(const show::ShowClock& showClock) {
     showClock_ = showClock;
     hangsFrom_ = (showClock.runStart() + kHangs).count();
+    aheadUntil_ = showClock.runStart() + kWarmUp;
     for (Output& output : outputs_) output.shown = Shown{.at = showClock.runStart()};  // every later refresh needs a frame
 }
 
 void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
     if (refreshes <= 0) return;
-    aheadUntil_ = clock_.now() + kAhead;
+    if (const Time before = std::exchange(lateAt_, newest_); newest_ > before && newest_ - before < kAhead)
+        aheadUntil_ = newest_ + kAhead;
     PartTimes spent;
-    std::transform(spent_.begin(), spent_.end(), output.spentUntilShown.begin(), spent.begin(), std::minus());
+    std::ranges::transform(spent_, output.spentUntilShown, spent.begin(), std::minus());
     const auto cause = causeOfDelay(spent, fromSeconds(1 / output.display.refreshRate()));
     (cause ? output.report.lateBy[static_cast<std::size_t>(*cause)] : output.report.lateByMachine) += refreshes;
     framesLate_ += refreshes;
@@ -359,9 +361,8 @@ void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
 
 void FrameLoop::finish(Time end) {
     hangsFrom_ = kNotYet;
-    // A refresh right at the end belongs to the show. The tolerance, a share of a period, allows
-    // for the inaccuracy of a display's moments.
-    constexpr double kTolerance = 0.1;
+    // A refresh right at the end belongs to the show; a display's moments are not exact.
+    constexpr double kTolerance = 0.1;  // of a period
     for (Output& output : outputs_) {
         if (const std::optional<Shown> shown = std::exchange(output.shown, std::nullopt); shown && shown->at < end)
             countLate(output, static_cast<std::int64_t>(
@@ -422,9 +423,8 @@ void FrameLoop::step() {
     hasTaken_ = false;
     if (exchanges_.update()) ++version_;
     oldestInput_ = Time::max();
-    const Time began = clock_.now();
     drawAll(showTime);
-    if (awaitInput(due, clock_.now() - began)) drawAll(showTime);
+    if (awaitInput(due)) drawAll(showTime);
 
     // The leader waits for its refresh; the others show their frames with it.
     const auto showOn = [&](Output& output, const Presenting& present) { alone(output, [&] { show(output, present); }); };
@@ -438,8 +438,8 @@ void FrameLoop::step() {
     for (Output& output : outputs_) alone(output, [&] { giveToReaders(output); });
 
     const auto seen = std::ranges::find_if(outputs_, [](const Output& output) { return output.shown.has_value(); });
-    if (seen != outputs_.end() && oldestInput_ != Time::max())
-        if (const auto given = showClock_.momentOf(oldestInput_, showClock_.runStart()))  // else it is from before this run
+    if (seen != outputs_.end() && oldestInput_ != Time::max())  // an input from before this run has no moment
+        if (const auto given = showClock_.momentOf(oldestInput_, showClock_.runStart()))
             inputToFrame_.add(seen->shown->at - *given);
     if (stateSlot_ != nullptr) {
         stateSlot_->writable() = state_;

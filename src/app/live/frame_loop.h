@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/live/held_frame.h"
 #include "app/live/run_report.h"
 #include "app/site/devices.h"
 
@@ -37,10 +38,11 @@ struct OutputSettings {
 // loop, and the others follow within the same refresh. A lost display is left out until it is back.
 // All pictures of a frame are finished before the first one is shown.
 //
-// A finished frame waits until there is just time to draw it again (held_frame.h). If there was an
-// input meanwhile, it is drawn again, so that a press is seen within 1.4 periods. Where drawing
-// takes more than half a period, and for kAhead after a late frame, it goes to the display at once.
-// If the display can hold it, the loop may be a frame ahead then.
+// A finished frame waits while there is time to draw it again (held_frame.h). If there was an input
+// meanwhile, it is drawn again, so that a press is seen within one and a half periods. Where
+// drawing takes too long for that, for kWarmUp at the start, and for kAhead after two late frames
+// within kAhead, it goes to the display at once. If the display can hold it, the loop may be a
+// frame ahead then, and the machine may be busy elsewhere.
 //
 // If an output cannot be drawn (a shader is missing, OpenGL has no memory, an exception), that is a
 // fault of this output alone. It is left out, and tried again with a back-off from kSoonestRetry to
@@ -50,7 +52,7 @@ struct OutputSettings {
 class FrameLoop {
 public:
     static constexpr Time kSoonestRetry = std::chrono::seconds(1), kLatestRetry = std::chrono::seconds(32);
-    static constexpr Time kAhead = std::chrono::seconds(10);
+    static constexpr Time kAhead = std::chrono::seconds(5), kWarmUp = std::chrono::milliseconds(300);
     // After so long without a frame the loop counts as hanging in a display.
     static constexpr Time kHangs = std::chrono::seconds(5);
 
@@ -174,7 +176,7 @@ private:
     void followSettings(Output& output, const show::PictureShift& shift);
     void draw(std::size_t output, Time showTime);
     void drawAll(Time showTime);
-    bool awaitInput(Time due, Time took);
+    bool awaitInput(Time due);
     void finish(Output& output);
     using Presenting = std::function<Result<Shown>(DisplaySink&)>;
     void show(Output& output, const Presenting& present);
@@ -189,10 +191,12 @@ private:
     std::filesystem::path assets_;
     Clock& clock_;
     show::ShowClock showClock_;
-    Time newest_{};         // the moment of the newest frame
-    Time oldestInput_{};    // of those that are seen for the first time in it, show time; Time::max(): there is none
-    Time aheadUntil_{};     // until then no frame waits for inputs
-    float lightShare_ = 0;  // how far the light correction is faded in with it
+    Time newest_{};       // the moment of the newest frame
+    Time oldestInput_{};  // of those that are seen for the first time in it, show time; Time::max(): there is none
+    HeldFrame held_;
+    Time lateAt_ = -kAhead;  // when a frame was late last
+    Time aheadUntil_{};      // until then no frame waits for inputs
+    float lightShare_ = 0;   // how far the light correction is faded in with it
     show::PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<Output> outputs_;

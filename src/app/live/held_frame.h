@@ -9,16 +9,30 @@
 namespace fantascope::app {
 
 // A finished frame waits before it goes to its display, so that an input that comes meanwhile is
-// still seen in it. It goes this share of a period before its refresh, at the latest.
-constexpr double kHeld = 0.4;
+// still seen in it. This says for how long.
+class HeldFrame {
+public:
+    // Notes how long it took to draw a frame.
+    void drawn(Time took) {
+        deviation_ += (std::chrono::abs(took - mean_) - deviation_) / 16;
+        mean_ += (took - mean_) / 8;
+    }
+    // Until when a frame for the refresh at `due` waits, so that it can be drawn again. Nothing: it
+    // goes at once, since drawing takes too long.
+    std::optional<Time> until(Time due, Time period) const {
+        // Of a period: so long before its refresh it goes in any case, and so long drawing may take.
+        constexpr double kAtLeast = 0.4, kAtMost = 0.5;
+        if (again() > fromSeconds(kAtMost * seconds(period))) return std::nullopt;
+        return due - std::max(again() + kWakes, fromSeconds(kAtLeast * seconds(period)));
+    }
+    // How long it may take to draw a frame again. Estimated as a network estimates how long an answer
+    // may take: from the mean and the mean deviation (Jacobson 1988).
+    Time again() const { return mean_ + 4 * deviation_ + kWakes; }
 
-// Until when a frame for the refresh at `due` waits, if it takes `took` to draw it again. Nothing:
-// it goes at once, since drawing takes more than half a period.
-inline std::optional<Time> heldUntil(Time due, Time period, Time took) {
-    constexpr Time kMargin = std::chrono::milliseconds(2);
-    const Time again = took + took / 4 + kMargin;
-    if (again > period / 2) return std::nullopt;
-    return due - std::max(again, fromSeconds(kHeld * seconds(period)));
-}
+private:
+    static constexpr Time kWakes = std::chrono::milliseconds(1);  // so late a thread may wake
+
+    Time mean_{}, deviation_{};
+};
 
 }  // namespace fantascope::app
