@@ -1,5 +1,7 @@
 #include "show/cue.h"
 
+#include "show/follow_loops.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,18 +34,35 @@ Result<Fade> readFade(const ConfigNode& node, std::int64_t version) {
     return fade;
 }
 
-// From when the cue is entered; or, as {after_fade: SECONDS}, from when its look is whole.
+constexpr int kMostTimes = 10000;
+
+// How a cue is followed by another one.
 struct Follow {
     Time time{};
-    bool isAfterFade = false;
+    bool isAfterFade = false;    // `time` counts from when the cue's look is whole, else from when it is entered
+    std::vector<ConfigNode> to;  // names of cues
+    int times = 0;
 };
 Result<Follow> readFollow(const ConfigNode& node, std::int64_t version) {
-    if (!node.isMap()) return Follow{TRY(readTime(node, kLongestWait)), false};
-    TRY(needsTracking(node, "after_fade", version));
-    Follow follow{Time{}, true};
+    if (!node.isMap()) return Follow{.time = TRY(readTime(node, kLongestWait)), .to = {}};
+    TRY(needsTracking(node, "follow", version));
+    std::optional<Time> after, afterFade;
+    const auto readWait = [](const ConfigNode& value) -> Result<std::optional<Time>> {
+        return std::optional(TRY(readTime(value, kLongestWait)));
+    };
+    Follow follow;
     ConfigFields fields(node);
-    fields.time("after_fade", follow.time, 0, kLongestWait);
+    fields.optional().read("after", after, readWait);
+    fields.optional().read("after_fade", afterFade, readWait);
+    fields.optional().read("to", follow.to, [](const ConfigNode& value) -> Result<std::vector<ConfigNode>> {
+        return value.isList() ? TRY(value.items(1)) : std::vector{value};
+    });
+    fields.optional().integer("times", follow.times, 1, kMostTimes);
     TRY(fields.finish());
+    if (after.has_value() == afterFade.has_value()) return node.error("give one of 'after' and 'after_fade', in seconds");
+    if (follow.times > 0 && follow.to.empty()) return node.error("'times' counts how often 'to' follows; add 'to', or remove it");
+    follow.time = after ? *after : *afterFade;
+    follow.isAfterFade = !after;
     return follow;
 }
 
@@ -78,7 +97,8 @@ Result<CuePart> readPart(const ConfigNode& node, const CueRules& rules) {
     return part;
 }
 
-Result<Cue> readCue(const ConfigNode& node, const CueRules& rules) {
+// `to`: receives the names of the cues that are to follow it.
+Result<Cue> readCue(const ConfigNode& node, const CueRules& rules, std::vector<ConfigNode>& to) {
     Cue cue;
     cue.blocks = rules.version < kTrackingVersion;
     std::optional<Follow> follow;
@@ -103,7 +123,10 @@ Result<Cue> readCue(const ConfigNode& node, const CueRules& rules) {
         return parts;
     });
     TRY(fields.finish());
-    if (follow) cue.follow = follow->time + (follow->isAfterFade ? cue.length() : Time{});
+    if (!follow) return cue;
+    cue.follow = follow->time + (follow->isAfterFade ? cue.length() : Time{});
+    cue.times = follow->times;
+    to = std::move(follow->to);
     return cue;
 }
 
@@ -138,24 +161,36 @@ Time Cue::length() const {
 
 Result<std::vector<Cue>> readCues(const ConfigNode& node, const CueRules& rules) {
     std::vector<Cue> cues;
+    std::vector<std::vector<ConfigNode>> followers;  // of each cue, by name
     const auto items = TRY(node.items(1));
     ConfigFaults faults;
-    for (const ConfigNode& item : items)
-        faults.take(readCue(item, rules), [&](Cue cue) {
+    for (const ConfigNode& item : items) {
+        std::vector<ConfigNode> to;
+        faults.take(readCue(item, rules, to), [&](Cue cue) {
             const auto same = [&](const Cue& other) { return other.name == cue.name; };
             if (std::any_of(cues.begin(), cues.end(), same))
                 faults.add(item.error(fmt::format("another cue is called '{}'; each needs its own name", cue.name)));
             if (const auto given = giveNumber(cue, cues.empty() ? 0 : cues.back().number, item); !given)
                 faults.add(given.error());
             cues.push_back(std::move(cue));
+            followers.push_back(std::move(to));
         });
+    }
     TRY(faults.result());
-    if (cues.back().follow && !rules.loops)
+    std::vector<std::string> names;
+    for (const Cue& cue : cues) names.push_back(cue.name);
+    for (std::size_t cue = 0; cue < cues.size(); ++cue)
+        for (const ConfigNode& to : followers[cue])
+            faults.take(to.choice(names), [&](std::size_t index) { cues[cue].followers.push_back(static_cast<int>(index)); });
+    TRY(faults.result());
+    if (cues.back().follow && cues.back().followers.empty() && !rules.loops)
         return items.back().error(fmt::format("no cue comes after this one; remove its 'follow'{}",
                                               rules.version < kTrackingVersion ? "" : ", or add 'at_end: loop' to the show"));
-    const auto takesTime = [](const Cue& cue) { return !cue.follow || *cue.follow > Time{}; };
-    if (rules.loops && std::ranges::none_of(cues, takesTime))
-        return node.error("a loop of cues that all follow at once would never end; give one of them a longer 'follow'");
+    if (const auto cue = hurriedLoop(cues, rules.loops))
+        return items[*cue].error(
+            fmt::format("from this cue on, cues follow each other in a circle in less than {:g} s, which would never end; "
+                        "give one of them a longer 'follow'",
+                        seconds(kShortestLoop)));
     return cues;
 }
 

@@ -50,7 +50,9 @@ struct Cue {
     std::size_t look = 0;  // index into Show::looks
     Time wait{};           // from when it is entered until it begins to change what is seen
     Fade fade;
-    std::optional<Time> follow;  // from when it is entered until the next one is
+    std::optional<Time> follow;  // from when it is entered until another one is
+    std::vector<int> followers;  // index into Show::cues: one of these follows, by chance; empty: the next one
+    int times = 0;               // so often in a row; then the next one. 0: always
     bool blocks = true;          // what the look does not name is dark; else it stays
     std::vector<CuePart> parts;
 

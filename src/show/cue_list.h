@@ -61,11 +61,13 @@ struct CueList {
     struct Cue {
         Look look;
         Fade fade;                         // from what is seen when the cue begins to change, to its look
-        std::optional<Time> follow;        // from when the cue is entered until the next one is; none: it waits for an input
+        std::optional<Time> follow;        // from when the cue is entered until another one is; none: it waits for an input
         std::vector<WindWish> winds = {};  // one for each output; a missing one is the usual wind
         std::string name = {};             // a revision of the list finds the cue by it
         Time wait = {};                    // from when the cue is entered until it begins to change
         std::vector<Part> parts = {};      // all else moves by `wait` and `fade`
+        std::vector<int> followers = {};   // one of these follows, by chance; empty: the one after it in the list
+        int times = 0;                     // so often in a row; then the one after it in the list. 0: always
 
         // From when the cue is entered until it begins to change what is seen.
         Time firstWait() const {

@@ -1,5 +1,7 @@
 #include "show/show.h"
 
+#include "show/follow_loops.h"
+
 #include "core/config/config.h"
 #include "core/geometry.h"
 
@@ -381,6 +383,8 @@ Result<CueList> Show::bind(const Site& site) const {
         bound.wait = cue.wait;
         bound.fade = cue.fade;
         bound.follow = cue.follow;
+        bound.followers = cue.followers;
+        bound.times = cue.times;
         bound.name = cue.name;
         bound.parts = boundParts(cue, bound.look, site, faults);
         list.cues.push_back(std::move(bound));
@@ -401,8 +405,15 @@ Result<CueList> Show::bind(const Site& site) const {
 }
 
 bool Show::needsNoGoFrom(std::size_t cue) const {
-    const std::size_t first = loops ? 0 : cue, count = cues.size() - first - (loops ? 0 : 1);
-    return std::ranges::all_of(std::span(cues).subspan(first, count), [](const Cue& each) { return each.follow.has_value(); });
+    std::set<std::size_t> reached{cue};
+    for (std::vector<std::size_t> waiting{cue}; !waiting.empty();) {
+        const std::size_t now = waiting.back();
+        waiting.pop_back();
+        if (!cues[now].follow && (loops || now + 1 < cues.size())) return false;
+        for (const std::size_t follower : followersOf(cues, now, loops))
+            if (reached.insert(follower).second) waiting.push_back(follower);
+    }
+    return true;
 }
 
 std::string Show::beginning() const {

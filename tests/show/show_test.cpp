@@ -1,5 +1,6 @@
 #include "show/show.h"
 
+#include "show/play/journal.h"
 #include "show/replaced.h"
 
 #include "core/geometry.h"
@@ -603,6 +604,28 @@ TEST(TrackedShow, may_start_and_loop_by_itself) {
     EXPECT_EQ(last.beginning(), "starts with 'Anew' and plays by itself to its end");
     EXPECT_FALSE(dark.show->start);
     EXPECT_FALSE(dark.show->loops);
+}
+
+TEST(TrackedShow, may_follow_in_loops) {
+    const auto with = [](std::string_view follow) {
+        return replaced(std::string(kTrackedShow), "follow: 20", "follow: " + std::string(follow));
+    };
+    const Loaded loaded(with("{after_fade: 3, to: [Dusk, Anew], times: 4}"));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const Cue& left = loaded.show->cues[1];
+    EXPECT_EQ(left.follow, left.length() + 3s);
+    EXPECT_THAT(left.followers, ElementsAre(0, 3));
+    EXPECT_EQ(left.times, 4);
+    const CueList list = loaded.show->bind(testSite()).value();
+    EXPECT_EQ(list.cues[1].followers, left.followers);
+    EXPECT_EQ(list.cues[1].times, 4);
+    EXPECT_NE(hashOf(list), hashOf(Loaded(with("{after_fade: 3, to: [Anew, Dusk], times: 4}")).show->bind(testSite()).value()));
+
+    const auto refusal = [&](std::string_view follow) { return Loaded(with(follow)).show.error().message(); };
+    EXPECT_THAT(refusal("{after: 3, to: Duks}"), HasSubstr("follow.to: one of"));
+    EXPECT_THAT(refusal("{to: Dusk}"), HasSubstr("give one of 'after' and 'after_fade'"));
+    EXPECT_THAT(refusal("{after: 3, times: 2}"), HasSubstr("'times' counts how often 'to' follows"));
+    EXPECT_THAT(refusal("{after: 0.05, to: Left}"), HasSubstr("follow each other in a circle in less than 0.1 s"));
 }
 
 TEST(TrackedShow, may_play_by_a_schedule) {

@@ -26,7 +26,7 @@ struct RunStatus {
     show::CueNumber number = 0;             // of the current cue
     std::string cueName, nextName;          // empty: there is none
     std::string nextNote;                   // of the next cue; empty: it has none
-    std::string loadedName;                 // of the cue that GO enters instead; empty: none is loaded
+    std::string loadedName;                 // of the cue that GO enters instead; empty: GO enters that one, too
     Time waitLeft{};                        // until the current cue begins to change what is seen; 0: it has begun
     Time fadeLeft{};                        // until its look is whole; 0: it is
     std::optional<Time> untilNext;          // until the next cue comes by a follow or by the schedule; none: it waits

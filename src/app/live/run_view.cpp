@@ -18,7 +18,8 @@ RunStatus RunView::at(Time moment, Time nextGo) {
         status.cueName = cue.name;
         status.number = cue.number;
     }
-    if (const auto next = replica_.playback().cues().after(state_.cue)) {
+    const auto after = replica_.playback().cues().after(state_.cue), follower = replica_.playback().followerAt(time);
+    if (const auto next = follower ? follower : after) {
         status.nextName = cues[static_cast<std::size_t>(*next)].name;
         status.nextNote = cues[static_cast<std::size_t>(*next)].note;
     }
@@ -28,6 +29,7 @@ RunStatus RunView::at(Time moment, Time nextGo) {
     if (nextGo != Time::max())
         status.untilNext = std::min(status.untilNext.value_or(Time::max()), std::max(Time{}, nextGo - runTime));
     if (length_) status.left = std::max(Time{}, *length_ - runTime);
+    if (follower && after && follower != after) status.loadedName = cues[static_cast<std::size_t>(*after)].name;  // GO's
     if (state_.loaded >= 0) status.loadedName = cues[static_cast<std::size_t>(state_.loaded)].name;
     status.controls = state_;
     if (hasNews()) status.said = std::exchange(news_, {});

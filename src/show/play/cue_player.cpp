@@ -1,6 +1,9 @@
 #include "show/play/cue_player.h"
 
+#include "show/follow_loops.h"
+
 #include "core/check.h"
+#include "core/random.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,29 +12,41 @@ namespace fantascope::show {
 
 namespace {
 
-// When the next cue follows a cue that was entered at `at`.
-std::optional<Time> followerAt(const CueList& list, int cue, Time at) {
-    const std::optional<Time>& follow = list.cues[static_cast<std::size_t>(cue)].follow;
-    return follow && list.after(cue) ? std::optional(at + *follow) : std::nullopt;
+using Position = CuePlayer::Position;
+
+// What follows a cue by itself; nothing: it waits for an input.
+std::optional<Position> followerOf(const CueList& list, const Position& now) {
+    if (now.cue < 0) return std::nullopt;
+    const CueList::Cue& cue = list.cues[static_cast<std::size_t>(now.cue)];
+    if (!cue.follow) return std::nullopt;
+    Position next{-1, now.entered + *cue.follow, now.follows + 1, now.turns};
+    int unlimited = 0;
+    int& turns = cue.times > 0 ? next.turns[now.cue] : unlimited;
+    if (!cue.followers.empty() && (cue.times == 0 || turns < cue.times)) {
+        ++turns;
+        const std::uint64_t chance =
+            streamSeed(list.seed, {static_cast<std::uint64_t>(now.cue), static_cast<std::uint64_t>(now.follows)});
+        next.cue = cue.followers[chance % cue.followers.size()];
+        return next;
+    }
+    next.turns.erase(now.cue);
+    const auto after = list.after(now.cue);
+    if (!after) return std::nullopt;
+    next.cue = *after;
+    return next;
 }
 
 // The dark before the first cue, as a cue.
 CueList::Cue darkOf(const CueList& list) { return {.look = list.dark, .fade = list.darkFade, .follow = {}}; }
 
-// The cue that is on at `at` if `cue` was entered at `entered`, and when it was entered itself.
-std::pair<int, Time> followed(const CueList& list, int cue, Time entered, Time at) {
-    if (cue < 0) return {cue, entered};
-    const auto follows = [](const CueList::Cue& each) { return each.follow.has_value(); };
-    if (list.loops && std::ranges::all_of(list.cues, follows)) {  // whole passes lead nowhere
-        Time pass{};
-        for (const CueList::Cue& each : list.cues) pass += *each.follow;
-        entered += (at - entered) / pass * pass;
+// What has followed a cue by `at`. A cue that is entered at `at` begins as any other.
+Position followed(const CueList& list, Position position, Time at) {
+    while (position.entered < at) {
+        const auto next = followerOf(list, position);
+        if (!next || next->entered > at) break;
+        position = *next;
     }
-    for (auto left = followerAt(list, cue, entered); left && *left <= at; left = followerAt(list, cue, entered)) {
-        cue = *list.after(cue);
-        entered = *left;
-    }
-    return {cue, entered};
+    return position;
 }
 
 }  // namespace
@@ -50,7 +65,7 @@ FoundCue foundAgain(int cue, const CueList& old, const CueList& list) {
 
 CuePlayer::CuePlayer(std::shared_ptr<const CueList> list) {
     examine(*list);
-    entries_.push_back({.list = list, .left = {}, .seen = LookCourses(list->dark)});
+    entries_.push_back({.list = list, .next = {}, .seen = LookCourses(list->dark)});
 }
 
 // Checks the looks of another list, and notes how much room they need.
@@ -63,30 +78,30 @@ void CuePlayer::examine(const CueList& list) {
             composed_.pictures += output.pictures.size();
         }
     }
-    const auto waits = [](const CueList::Cue& cue) { return !cue.follow || *cue.follow > Time{}; };
-    FANTASCOPE_CHECK(!list.loops || std::ranges::any_of(list.cues, waits), "a pass of a list that loops takes time");
+    FANTASCOPE_CHECK(!hurriedLoop(list.cues, list.loops), "a circle of cues that follow each other takes time");
 }
 
 LookCourses::Room CuePlayer::room() const { return {sources_.size() + composed_.layers, composed_.pictures}; }
 
 void CuePlayer::enter(int cue, Time at, Time ago) {
     std::shared_ptr<const CueList> list = this->at(at).list;
-    const auto [now, entered] = followed(*list, cue, at - ago, at);
-    begin(std::move(list), now, entered, at);
+    const Position position = followed(*list, {cue, at - ago}, at);
+    begin(std::move(list), position, at);
     followOn();
 }
 
-// Adds the entries of a cue that was entered at `entered` and is seen from `at` on. Later entries
-// are dropped.
-void CuePlayer::begin(std::shared_ptr<const CueList> list, int cue, Time entered, Time at) {
+// Adds the entries of a cue that was entered before and is seen from `at` on. Later entries are
+// dropped.
+void CuePlayer::begin(std::shared_ptr<const CueList> list, const Position& position, Time at) {
+    const auto& [cue, entered, follows, turns] = position;
     const bool hasBegun = entered < at;
     const CueList::Cue dark = cue < 0 ? darkOf(*list) : CueList::Cue();
     const CueList::Cue& wanted = cue < 0 ? dark : list->cues[static_cast<std::size_t>(cue)];
     const Time least = hasBegun ? list->blackoutFade : Time{};
     drop(at);
-    Entry entry{.at = at, .list = list, .cue = cue, .entered = entered, .left = {}, .seen = entries_.back().seen};
+    Entry entry{.at = at, .list = list, .cue = cue, .entered = entered, .next = {}, .seen = entries_.back().seen};
     entry.whole = std::max(entered + wanted.length(), at + least);
-    if (cue >= 0) entry.left = followerAt(*list, cue, entered);
+    entry.next = followerOf(*list, position);
     move(std::move(entry), wanted, least, hasBegun);
 }
 
@@ -117,8 +132,9 @@ void CuePlayer::followOn() {
     const std::size_t most = cues().cues.size();
     for (std::size_t added = 0; added < most; ++added) {
         const Entry& last = entries_.back();
-        if (!last.left) return;
-        begin(last.list, *last.list->after(last.cue), *last.left, *last.left);
+        if (!last.next) return;
+        const Position next = *last.next;
+        begin(last.list, next, next.entered);
     }
 }
 
@@ -127,7 +143,7 @@ void CuePlayer::foresee(Time time, Time kept) {
         const auto next = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.at > kept; });
         if (next - entries_.begin() > 1) entries_.erase(entries_.begin(), next - 1);
     };
-    while (entries_.back().entered <= time && entries_.back().left) {
+    while (entries_.back().entered <= time && entries_.back().next) {
         followOn();
         forget();
     }
@@ -139,7 +155,7 @@ void CuePlayer::revise(std::shared_ptr<const CueList> list, Time at) {
     FANTASCOPE_CHECK(isOfOneSite(list->dark, now.list->dark), "all lists are for one site");
     examine(*list);
     const auto [cue, isThere] = foundAgain(now.cue, *now.list, *list);
-    Entry entry{.at = at, .list = list, .cue = cue, .entered = now.entered, .whole = now.whole, .left = {}, .seen = now.seen};
+    Entry entry{.at = at, .list = list, .cue = cue, .entered = now.entered, .whole = now.whole, .next = {}, .seen = now.seen};
     entry.isGone = !isThere || now.isGone;
     drop(at);
     if (entry.isGone) {
@@ -150,8 +166,8 @@ void CuePlayer::revise(std::shared_ptr<const CueList> list, Time at) {
     } else {
         const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
         entry.whole = std::max(entry.entered + wanted.length(), at + list->blackoutFade);
-        entry.left = followerAt(*list, cue, entry.entered);
-        if (entry.left) entry.left = std::max(at, *entry.left);
+        entry.next = followerOf(*list, {cue, entry.entered});
+        if (entry.next) entry.next->entered = std::max(at, entry.next->entered);
         move(std::move(entry), wanted, list->blackoutFade, false);
     }
     followOn();
@@ -176,9 +192,13 @@ Time CuePlayer::waitLeftAt(Time time) const {
 }
 
 std::optional<Time> CuePlayer::untilFollowAt(Time time) const {
-    const Entry& now = at(time);
-    const auto next = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.entered > now.entered; });
-    return next != entries_.end() ? std::optional(next->at - time) : std::nullopt;
+    const auto& next = at(time).next;
+    return next ? std::optional(next->entered - time) : std::nullopt;
+}
+
+std::optional<int> CuePlayer::followerAt(Time time) const {
+    const auto& next = at(time).next;
+    return next ? std::optional(next->cue) : std::nullopt;
 }
 
 }  // namespace fantascope::show

@@ -6,6 +6,7 @@
 
 #include "core/clock.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -23,8 +24,9 @@ namespace fantascope::show {
 //   are matched by source. Relays switch after their part's wait.
 // - The wind of each output moves to the wind of the cue without a jump, even while the output is
 //   dark.
-// - A cue with `follow` enters the next cue by itself, that long after it was entered, unless
-//   another cue is entered before. In a list that loops, the first cue comes after the last.
+// - A cue with `follow` enters another cue by itself, that long after it was entered, unless another
+//   cue is entered before: the next one, or one of its `followers`, chosen by the list's seed and the
+//   number of follows since an input. In a list that loops, the first cue comes after the last.
 // - After a revision the cue of the same name continues. What is seen moves to the cue's new look
 //   in the rest of its new fade, but in no less than the new `blackoutFade`. Its follow counts from
 //   when the cue was entered. If the cue is gone, what is seen stays until another one is entered,
@@ -34,17 +36,28 @@ namespace fantascope::show {
 // Thread: const functions are reentrant.
 class CuePlayer {
 public:
+    // How often each cue with `times` has been followed by one of its `followers`, since an input
+    // has entered a cue.
+    using Turns = std::map<int, int>;
+    // A cue, and when it is entered; how many cues have followed by themselves since an input has
+    // entered one, and the turns until then.
+    struct Position {
+        int cue = -1;
+        Time entered{};
+        int follows = 0;
+        Turns turns{};
+    };
     // What is seen from a moment on, because of a cue that was entered, or that will follow by
     // itself if no other is entered first. A cue that moves things at different moments has an
     // entry for each.
     struct Entry {
         Time at = Time::min();
         std::shared_ptr<const CueList> list;
-        int cue = -1;                // of `list`; -1: the dark before the first
-        Time entered = Time::min();  // when the cue was entered, at `at` or earlier
-        Time whole = Time::min();    // when the cue's look is whole
-        std::optional<Time> left;    // when the next cue follows by itself
-        bool isGone = false;         // `list` has lost the cue that is seen; `cue` is the nearest one before it
+        int cue = -1;                  // of `list`; -1: the dark before the first
+        Time entered = Time::min();    // when the cue was entered, at `at` or earlier
+        Time whole = Time::min();      // when the cue's look is whole
+        std::optional<Position> next;  // that follows by itself
+        bool isGone = false;           // `list` has lost the cue that is seen; `cue` is the nearest one before it
         LookCourses seen;
     };
 
@@ -71,6 +84,8 @@ public:
     Time waitLeftAt(Time time) const;
     // Until the next cue follows by itself; nothing: it does not.
     std::optional<Time> untilFollowAt(Time time) const;
+    // The cue that follows then.
+    std::optional<int> followerAt(Time time) const;
 
     // Whether a look of any list so far has a source.
     bool shows(SourceId source) const { return sources_.contains(source); }
@@ -79,7 +94,7 @@ public:
 
 private:
     void examine(const CueList& list);
-    void begin(std::shared_ptr<const CueList> list, int cue, Time entered, Time at);
+    void begin(std::shared_ptr<const CueList> list, const Position& position, Time at);
     void move(Entry entry, const CueList::Cue& wanted, Time least, bool hasBegun);
     void drop(Time at);
     void followOn();

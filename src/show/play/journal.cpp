@@ -5,6 +5,7 @@
 #include "core/text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -209,7 +210,10 @@ Result<Journal> journalOf(std::string_view text) {
 
 std::uint64_t hashOf(const CueList& list) {
     std::string text = fmt::format("{} {}", list.loops, list.goInterval.count());
-    for (const CueList::Cue& cue : list.cues) text += fmt::format("\n{} {}", cue.follow ? cue.follow->count() : -1, cue.name);
+    for (const CueList::Cue& cue : list.cues) {
+        text += fmt::format("\n{} {}", cue.follow ? cue.follow->count() : -1, cue.name);
+        if (!cue.followers.empty()) text += fmt::format(" {} {} {}", fmt::join(cue.followers, ","), cue.times, list.seed);
+    }
     return fnv1a(text);
 }
 

@@ -9,6 +9,7 @@ namespace fantascope::show {
 namespace {
 
 constexpr Time kKept = std::chrono::minutes(10);
+constexpr Time kLongestAgo = std::chrono::hours(48);  // no night is longer
 
 void dim(Look& look, float light) {
     for (OutputState& output : look.outputs) {
@@ -111,7 +112,7 @@ Outcome Playback::moveOn(const Input& input, Time at) {
         if (now.cue <= 0) return Outcome::AtFirstCue;
         wanted = now.cue - 1;
     } else {
-        if ((input.cue != kNoCue && !has(input.cue)) || input.ago < Time{}) return Outcome::NoSuchCue;
+        if ((input.cue != kNoCue && !has(input.cue)) || input.ago < Time{} || input.ago > kLongestAgo) return Outcome::NoSuchCue;
         wanted = input.cue;
     }
     if (paused_.last()) letGoOn(at);

@@ -86,6 +86,9 @@ public:
     // waits for an input.
     std::optional<Time> untilFollowAt(Time time) const { return player_.untilFollowAt(cueTime_.at(time)); }
 
+    // The cue that follows then.
+    std::optional<int> followerAt(Time time) const { return player_.followerAt(cueTime_.at(time)); }
+
     // What is seen at `time`. Any time will do, but a list that loops must have been foreseen until
     // then. For a time that is forgotten it gives what is oldest. The cost is a few binary searches
     // and the evaluation of each course. The call allocates only when it fills `out` for the first

@@ -41,6 +41,21 @@ TEST_F(View, tells_the_first_cue_after_the_last_of_a_show_that_loops) {
     }
 }
 
+// Example failure: the terminal says that 'First light' comes in ten seconds, and the loop begins
+// again.
+TEST_F(View, tells_what_follows_and_what_go_would_enter) {
+    show::CueList loop = run_.cues;
+    loop.cues[0].follow = 10s;
+    loop.cues[0].followers = {2};
+    show::InputLog inputs(loop);
+    RunView view(run_.show, inputs, run_.events, clock_, 60s);
+    inputs.submit({3h + 1s, show::Input::Kind::Go});
+    const RunStatus status = view.at(12s, Time::max());
+    EXPECT_EQ(status.nextName, run_.show.cues[2].name);
+    EXPECT_EQ(status.untilNext, 9s);
+    EXPECT_EQ(status.loadedName, run_.show.cues[1].name) << "GO's";
+}
+
 // Example failure: the report has read a sentence, and the terminal never shows it.
 TEST_F(View, says_what_happened_once_whoever_else_listens) {
     EXPECT_FALSE(view_.hasNews());

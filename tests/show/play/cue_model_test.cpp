@@ -1,7 +1,10 @@
 // The cue engine against a model that shares none of its code: random lists, random inputs, random
 // moments.
 
+#include "show/follow_loops.h"
 #include "show/play/playback.h"
+
+#include "core/random.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -65,9 +68,11 @@ public:
     void advance(Time time) {
         while (!entered_.empty()) {
             const Entered last = entered_.back();
-            if (!followsBy(last, cueTime(time))) return;
-            const Time cueTime = last.cueTime + *cueOf(last.cue).follow;
-            entered_.push_back({runs_.back().at + (cueTime - runs_.back().cueTime), cueTime, cueTime, next(last.cue)});
+            Entered follower = last;
+            if (!follow(follower, cueTime(time))) return;
+            follower.seen = follower.cueTime;
+            follower.at = runs_.back().at + (follower.cueTime - runs_.back().cueTime);
+            entered_.push_back(follower);
         }
     }
     bool apply(const Input& input) {
@@ -187,8 +192,10 @@ public:
 private:
     struct Entered {
         Time at, cueTime;
-        Time seen;  // the cue time from which on it is; later than `cueTime` if the cue was joined
-        int cue;    // -1: the dark
+        Time seen;                  // the cue time from which on it is; later than `cueTime` if the cue was joined
+        int cue;                    // -1: the dark
+        std::vector<int> turned{};  // the cues that a follower has followed since an input, each as often
+        int follows = 0;            // since an input
     };
     // From a moment on, cue time goes on, or stands still.
     struct Run {
@@ -228,18 +235,30 @@ private:
         loaded_ = -1;
         if (wanted < 0 && isFrozen(newest_)) freezes_.push_back({newest_, false, entered_.size()});
         const Time now = cueTime(newest_);
-        Entered joined{newest_, now - (input.kind == Input::Kind::Jump ? input.ago : Time{}), now, wanted};
-        while (followsBy(joined, now)) {
-            joined.cueTime += *cueOf(joined.cue).follow;
-            joined.cue = next(joined.cue);
-        }
+        Entered joined{newest_, now - (input.kind == Input::Kind::Jump ? input.ago : Time{}), now, wanted, {}, 0};
+        while (joined.cueTime < now && follow(joined, now)) continue;
         entered_.push_back(joined);
         return true;
     }
-    bool followsBy(const Entered& entered, Time cueTime) const {
-        if (entered.cue < 0 || !hasNext(entered.cue)) return false;
-        const auto& follow = cueOf(entered.cue).follow;
-        return follow && entered.cueTime + *follow <= cueTime;
+    // Goes on to the cue that follows by `cueTime`. Returns whether one does.
+    bool follow(Entered& entered, Time cueTime) const {
+        if (entered.cue < 0) return false;
+        const CueList::Cue& cue = cueOf(entered.cue);
+        if (!cue.follow || entered.cueTime + *cue.follow > cueTime) return false;
+        const auto turns = static_cast<int>(std::ranges::count(entered.turned, entered.cue));
+        if (!cue.followers.empty() && (cue.times == 0 || turns < cue.times)) {
+            const std::uint64_t chance =
+                streamSeed(list_.seed, {static_cast<std::uint64_t>(entered.cue), static_cast<std::uint64_t>(entered.follows)});
+            if (cue.times > 0) entered.turned.push_back(entered.cue);
+            entered.cue = cue.followers[chance % cue.followers.size()];
+        } else {
+            if (!hasNext(entered.cue)) return false;
+            std::erase(entered.turned, entered.cue);
+            entered.cue = next(entered.cue);
+        }
+        entered.cueTime += *cue.follow;
+        ++entered.follows;
+        return true;
     }
     void run(bool runs) {
         if (runs_.back().runs == runs) return;
@@ -334,7 +353,7 @@ CueList::Cue anyCue() {
         cue.look.relays.push_back(*rc::gen::arbitrary<bool>());
         put([&](CueList::Part& part) { part.relays.push_back(relay); });
     }
-    if (*rc::gen::inRange(0, 3) == 0) cue.follow = anyTime();
+    if (*rc::gen::inRange(0, 2) == 0) cue.follow = anyTime();
     return cue;
 }
 
@@ -346,8 +365,14 @@ CueList anyList() {
     list.panicFade = anyTime();
     list.darkFade = anyTime();
     for (int cues = *rc::gen::inRange(1, 7); cues > 0; --cues) list.cues.push_back(anyCue());
-    list.loops = *rc::gen::arbitrary<bool>() &&
-                 std::ranges::any_of(list.cues, [](const CueList::Cue& cue) { return !cue.follow || *cue.follow > Time{}; });
+    list.loops = *rc::gen::arbitrary<bool>();
+    const auto count = static_cast<int>(list.cues.size());
+    for (CueList::Cue& cue : list.cues) {
+        for (int followers = *rc::gen::element(0, 0, 1, 2); followers > 0; --followers)
+            cue.followers.push_back(*rc::gen::inRange(0, count));
+        cue.times = *rc::gen::inRange(0, 3);
+    }
+    while (const auto cue = hurriedLoop(list.cues, list.loops)) list.cues[*cue].follow.reset();
     return list;
 }
 

@@ -287,6 +287,59 @@ TEST(Playback, a_jump_to_the_dark_fades_and_go_begins_anew) {
     EXPECT_EQ(stateOf(playback, 40s).cue, 0);
 }
 
+// A loop of two cues with an exit: GO goes on in the list.
+TEST(Playback, cues_that_lead_back_play_in_a_loop_until_go) {
+    CueList list = threeCues();
+    list.cues[0].follow = list.cues[1].follow = 10s;
+    list.cues[1].followers = {0};
+    Playback playback = after(list, {go(0s)});
+    playback.foresee(1min);
+    EXPECT_EQ(stateOf(playback, 35s).cue, 1);
+    EXPECT_EQ(stateOf(playback, 45s).cue, 0);
+    EXPECT_EQ(stateOf(playback, 45s).next, 1) << "GO's";
+    EXPECT_EQ(playback.followerAt(55s), 0);
+    playback.foresee(1h);
+    EXPECT_EQ(stateOf(playback, 1h - 5s).cue, 1);
+    playback.apply(go(1h + 15s));
+    EXPECT_EQ(stateOf(playback, 1h + 15s).cue, 2) << "the way out";
+}
+
+TEST(Playback, a_loop_may_have_turns) {
+    CueList list = threeCues();
+    list.cues[0].follow = list.cues[1].follow = 10s;
+    list.cues[1].followers = {0};
+    list.cues[1].times = 2;
+    const auto cueAt = [&](Playback& playback, Time time) { return playback.foresee(time), stateOf(playback, time).cue; };
+    Playback playback = after(list, {go(0s)});
+    EXPECT_EQ(cueAt(playback, 55s), 1) << "the third time";
+    EXPECT_EQ(cueAt(playback, 65s), 2);
+    EXPECT_EQ(playback.untilFollowAt(65s), std::nullopt);
+    playback.apply(jump(70s, 0));
+    EXPECT_EQ(cueAt(playback, 125s), 1) << "it begins to count anew";
+    EXPECT_EQ(cueAt(playback, 135s), 2);
+    Playback joined = after(list, {{.at = 5s, .kind = Input::Kind::Jump, .ago = 60s}});
+    EXPECT_EQ(stateOf(joined, 5s).cue, 2);
+}
+
+TEST(Playback, cues_that_follow_by_chance_follow_by_the_seed) {
+    CueList list = threeCues();
+    for (CueList::Cue& cue : list.cues) {
+        cue.follow = 1s;
+        cue.followers = {0, 1, 2};
+    }
+    const auto played = [&](std::uint64_t seed) {
+        list.seed = seed;
+        Playback playback = after(list, {go(0s)});
+        std::vector<int> cues;
+        for (Time time = 500ms; time < 60s; time += 1s) playback.foresee(time), cues.push_back(stateOf(playback, time).cue);
+        return cues;
+    };
+    const std::vector<int> cues = played(1);
+    EXPECT_EQ(cues, played(1));
+    EXPECT_NE(cues, played(2));
+    for (int cue = 0; cue < 3; ++cue) EXPECT_GT(std::ranges::count(cues, cue), 10) << cue;
+}
+
 TEST(Playback, what_cannot_be_done_is_ignored_and_said) {
     Playback playback(threeCues());
     EXPECT_EQ(playback.apply(back(1s)), Outcome::AtFirstCue);  // there is no cue at all yet
