@@ -168,13 +168,14 @@ TEST(MutatedFiles, journals_leave_lines_out_and_invent_none) {
     text += lineOf(journal::Run{.at = 0s, .utc = 1'800'000'000s, .list = hashOf(list), .show = "show.yaml"});
     for (int i = 0; i < 40; ++i) {
         const Time at = i * 1s;
-        text +=
-            lineOf(Input{.at = at, .kind = i % 5 == 4 ? Input::Kind::Jump : Input::Kind::Go, .cue = i % 4, .ago = i % 3 * 1s});
+        text += lineOf(journal::Line(
+            Input{.at = at, .kind = i % 5 == 4 ? Input::Kind::Jump : Input::Kind::Go, .cue = i % 4, .ago = i % 3 * 1s}));
         text += lineOf(journal::State{at, {}, true, "b"});
         text += lineOf(journal::Told{at, "cue 2: b"});
     }
     std::set<std::string> lines;
     const Journal whole = journalOf(text).value();
+    ASSERT_EQ(whole.damaged, 0u);
     for (const Journal::Entry& entry : whole.entries) lines.insert(lineOf(entry.line));
     for (int i = 0; i < mutations(); ++i) {
         Rng rng(streamSeed(3, {static_cast<std::uint64_t>(i)}));
