@@ -95,7 +95,9 @@ void sendKey(Display* display, const std::string& title, const std::string& key,
     event.xkey.time = CurrentTime;
     event.xkey.state = state;
     event.xkey.keycode = XKeysymToKeycode(display, XStringToKeysym(key.c_str()));
+    const VanishingWindows vanishing(display);  // a key may close its window before it is released
     XSendEvent(display, event.xkey.window, True, KeyPressMask, &event);
+    XSync(display, False);
 }
 
 // The process of an X server with the number `display`. Error: it does not start.
@@ -218,14 +220,12 @@ bool XServer::hasWindow(const std::string& title) const {
 void XServer::pressKey(const std::string& title, const std::string& key) const {
     const Connection connection = connectionTo(display_);
     sendKey(connection.get(), title, key, KeyPress, 0);
-    XSync(connection.get(), False);
 }
 
 void XServer::typeKey(const std::string& title, const std::string& key, Held held) const {
     const Connection connection = connectionTo(display_);
     const unsigned state = held == Held::Shift ? ShiftMask : held == Held::Control ? ControlMask : 0;
     for (const int type : {KeyPress, KeyRelease}) sendKey(connection.get(), title, key, type, state);
-    XSync(connection.get(), False);
 }
 
 void XServer::movePointer(const std::string& title, int x, int y, Button button) const {
