@@ -58,8 +58,8 @@ protected:
         EXPECT_THAT(outcome, exits(0));
         said_ = outcome.errors;
         std::vector<std::pair<std::string, double>> cues;
-        for (const json& cue : json::parse(contentsOf(folder_ / "r.json"))["cues"])
-            cues.emplace_back(cue["name"], cue["entered"]);
+        const json report = json::parse(contentsOf(folder_ / "r.json"));
+        for (const json& cue : report["cues"]) cues.emplace_back(cue["name"], cue["entered"]);
         return cues;
     }
     static auto entered(const std::string& cue, double at) { return Pair(cue, testing::DoubleNear(at, 0.3)); }

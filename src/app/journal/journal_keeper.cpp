@@ -63,10 +63,12 @@ void JournalKeeper::tick(const show::journal::Figures& now) {
         began_ = began;
         journal_->write(show::journal::Clock{showTime, began + showTime});
     }
-    while (const show::Event* const event = told_.next())
-        if (std::string sentence = show::sentenceOf(*event);
-            !sentence.empty() && !std::holds_alternative<show::event::KeysAsked>(event->what))
+    while (const show::Event* const event = told_.next()) {
+        const bool isHelp = std::holds_alternative<show::event::KeysAsked>(event->what) ||
+                            std::holds_alternative<show::event::NextDayTold>(event->what);
+        if (std::string sentence = show::sentenceOf(*event); !sentence.empty() && !isHelp)
             journal_->write(show::journal::Told{event->at, std::move(sentence)}, false);
+    }
     replica_.stateAt(showTime, state_);
     show::journal::State state{.at = written_.at, .controls = state_, .corrects = state_.corrects, .cue = written_.cue};
     state.controls.next = std::nullopt;
