@@ -28,8 +28,8 @@ schedule:
 sources: {red: {solid: [1, 0, 0]}}
 looks: {red: {outputs: {wall: [{source: red}]}}, off: {outputs: {wall: []}}}
 cues:
-  - {name: Red, look: red, fade: 1, follow: 60}
-  - {name: Off, look: off, fade: 1, follow: {after: 60, to: Red}}
+  - {name: Red, look: red, fade: 1, follow: 50}
+  - {name: Off, look: off, fade: 1, follow: {after: 50, to: Red}}
   - {name: Bells, look: red, fade: 1}
 )";
 
@@ -75,18 +75,18 @@ TEST_F(ScheduledNight, plays_what_its_table_says) {
     EXPECT_EQ(nights[1]["date"], "2026-12-05");
     const double began = nights[0]["cues"][0]["from"].get<double>() - 60;
     EXPECT_EQ(nights[0]["cues"][0]["until"].get<double>() - began, 7 * 60);
-    EXPECT_THAT(playedFrom("2026-12-04 19:59", "480"),
-                ElementsAre(entered("Red", 60), entered("Off", 120), entered("Red", 180), entered("Off", 240),
-                            entered("Red", 300), entered("Off", 360), entered("", 420)));
+    EXPECT_THAT(playedFrom("2026-12-04 19:59", "480"), ElementsAre(entered("Red", 60), entered("Off", 110), entered("Red", 160),
+                                                                   entered("Off", 210), entered("Red", 260), entered("Off", 310),
+                                                                   entered("Red", 360), entered("Off", 410), entered("", 420)));
     EXPECT_THAT(said_, HasSubstr("20:00  Red\n"));
     // On a Saturday the bells come in between, and nothing ends them before noon.
     EXPECT_EQ(nights[1]["cues"][1]["cue"], "Bells");
-    EXPECT_THAT(playedFrom("2026-12-05 20:03", "300"), ElementsAre(entered("Off", 0), entered("Bells", 60)));
+    EXPECT_THAT(playedFrom("2026-12-05 20:03", "300"), ElementsAre(entered("Off", 0), entered("Red", 20), entered("Bells", 60)));
 }
 
 // A machine that boots in the middle of a night, with nobody to press anything.
 TEST_F(ScheduledNight, is_joined_where_it_would_be) {
-    EXPECT_THAT(playedFrom("2026-12-04 20:03", "70"), ElementsAre(entered("Off", 0), entered("Red", 60)));
+    EXPECT_THAT(playedFrom("2026-12-04 20:03", "65"), ElementsAre(entered("Off", 0), entered("Red", 20)));
     EXPECT_THAT(said_, HasSubstr("schedule: 'Red' since 20:00, joined where the show would be"));
     EXPECT_THAT(playedFrom("2026-12-04 20:06", "10"), ElementsAre());
 }
