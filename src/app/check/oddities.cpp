@@ -165,7 +165,7 @@ void noteGaps(const show::Site& site, std::vector<std::string>& oddities) {
                 if (!isShown)
                     oddities.push_back(
                         fmt::format("{}: no output shows the place [{:g}, {:g}, {:g}, {:g}] of the canvas '{}'; its "
-                                    "'part's leave a gap",
+                                    "parts leave a gap",
                                     site.file.string(), low.x, low.y, high.x, high.y, output.canvas));
             }
     }

@@ -68,25 +68,18 @@ void Hand::tell(Time showTime) {
         if (const auto on = show::kHolds[i].on; told_.*on != state_.*on)
             events_.append({showTime, show::event::HoldChanged{static_cast<show::Hold>(i), state_.*on}});
     if (told_.master != state_.master) events_.append({showTime, show::event::MasterChanged{state_.master}});
-    const int cues = static_cast<int>(show_.cues.size());
-    if (told_.cue != state_.cue) {
-        show::event::CueEntered news{.cue = state_.cue, .cues = cues, .name = {}};
-        if (state_.cue >= 0) {
-            const show::Cue& cue = show_.cues[static_cast<std::size_t>(state_.cue)];
-            news.name = cue.name;
-            news.number = cue.number;
-        }
-        events_.append({showTime, news});
-    }
-    if (told_.loaded != state_.loaded && (state_.loaded >= 0 || told_.cue == state_.cue)) {
-        show::event::CueLoaded news{.cue = state_.loaded, .cues = cues, .name = {}};
-        if (state_.loaded >= 0) {
-            const show::Cue& cue = show_.cues[static_cast<std::size_t>(state_.loaded)];
-            news.name = cue.name;
-            news.number = cue.number;
-        }
-        events_.append({showTime, news});
-    }
+    // News of a cue by its number; -1: of none.
+    const auto named = [&](auto news, int cue) {
+        news.cue = cue;
+        news.cues = static_cast<int>(show_.cues.size());
+        if (cue < 0) return news;
+        news.name = show_.cues[static_cast<std::size_t>(cue)].name;
+        news.number = show_.cues[static_cast<std::size_t>(cue)].number;
+        return news;
+    };
+    if (told_.cue != state_.cue) events_.append({showTime, named(show::event::CueEntered(), state_.cue)});
+    if (told_.loaded != state_.loaded && (state_.loaded >= 0 || told_.cue == state_.cue))
+        events_.append({showTime, named(show::event::CueLoaded(), state_.loaded)});
     told_ = state_;
 }
 

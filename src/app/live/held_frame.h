@@ -20,13 +20,14 @@ public:
     // Until when a frame for the refresh at `due` waits, so that it can be drawn again. Nothing: it
     // goes at once, since drawing takes too long.
     std::optional<Time> until(Time due, Time period) const {
-        // Of a period: so long before its refresh it goes in any case, and so long drawing may take.
+        // Shares of a period: the frame goes that long before its refresh, or earlier; drawing it
+        // again may take that long, or less.
         constexpr double kAtLeast = 0.4, kAtMost = 0.5;
         if (again() > fromSeconds(kAtMost * seconds(period))) return std::nullopt;
         return due - std::max(again() + kWakes, fromSeconds(kAtLeast * seconds(period)));
     }
-    // How long it may take to draw a frame again. Estimated as a network estimates how long an answer
-    // may take: from the mean and the mean deviation (Jacobson 1988).
+    // How long it may take to draw a frame again. Estimated as a network estimates how long an
+    // answer may take: from the mean and the mean deviation (Jacobson 1988).
     Time again() const { return mean_ + 4 * deviation_ + kWakes; }
 
 private:

@@ -116,7 +116,7 @@ Outcome Playback::moveOn(const Input& input, Time at) {
         wanted = input.cue;
     }
     if (paused_.last()) letGoOn(at);
-    if (wanted == kNoCue) frozen_.set(at, nullptr);  // who wants it dark wants nothing of a freeze
+    if (wanted == kNoCue) frozen_.set(at, nullptr);  // a freeze must not keep the light on
     loaded_.set(at, kNoCue);
     player_.enter(*wanted, cueTime_.at(at), input.kind == Input::Kind::Jump ? input.ago : Time{});
     return Outcome::Taken;

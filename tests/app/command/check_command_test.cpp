@@ -96,7 +96,7 @@ cues: [{name: Before, look: glow, fade: 1}, {name: Glow, look: glow, fade: 1, wa
           "note: show.yaml: the cue 'Glow' waits 5 s, and the next one follows after 4 s: nothing of it is seen",
           "note: show.yaml: no look names these things of site.yaml: fixture 'bench'; they stay dark",
           "its picture has 900 rows, and the canvas 'roof' 360: a smaller one looks the same",
-          "note: site.yaml: no output shows the place [0.45, 0, 0.5, 1] of the canvas 'wall'; its 'part's leave a gap"})
+          "note: site.yaml: no output shows the place [0.45, 0, 0.5, 1] of the canvas 'wall'; its parts leave a gap"})
         EXPECT_THAT(lines, HasSubstr(note));
     EXPECT_EQ(std::ranges::count(lines, '\n'), 10) << lines;
 }
