@@ -65,8 +65,9 @@ public:
         : source_(source), reader_(source.stream), frame_(std::move(frame)), uploader_(std::move(uploader)), uploads_(uploads) {}
 
     void paint(const Moment& moment, gpu::LayerPicture& picture) override {
-        reader_.at(positionAt(source_, moment.ofLayer),
-                   [&](const RgbaImage& frame) { uploads_.time([&] { uploader_.upload(frame, frame_.texture); }); });
+        const auto position = positionAt(source_, moment.ofLayer);
+        if (!position) return picture.begin();  // nothing
+        reader_.at(*position, [&](const RgbaImage& frame) { uploads_.time([&] { uploader_.upload(frame, frame_.texture); }); });
         frame_.paint(picture);
     }
     void follow(const CanvasPlace& place) override { frame_.painter.follow(place); }

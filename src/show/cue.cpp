@@ -1,6 +1,7 @@
 #include "show/cue.h"
 
 #include "show/follow_loops.h"
+#include "show/names.h"
 
 #include <fmt/format.h>
 
@@ -35,6 +36,7 @@ Result<Fade> readFade(const ConfigNode& node, std::int64_t version) {
 }
 
 constexpr int kMostTimes = 10000;
+constexpr std::string_view kDark = "dark";  // before the first cue of a list
 
 // How a cue is followed by another one.
 struct Follow {
@@ -97,6 +99,31 @@ Result<CuePart> readPart(const ConfigNode& node, const CueRules& rules) {
     return part;
 }
 
+// Cues of the side lists, by the names of the lists.
+Result<std::vector<CueList::Cue::SideCue>> readWith(const ConfigNode& node, const CueRules& rules) {
+    std::vector<std::string> lists;
+    for (const CueRules::Side& side : rules.sides) lists.push_back(side.name);
+    if (lists.empty()) return node.error("no list plays beside this one; lists stand under 'lists' of the show");
+    std::vector<CueList::Cue::SideCue> with;
+    ConfigFaults faults;
+    for (const auto& [name, cue] : TRY(node.entries())) {
+        const auto list = findName(name, lists, "list");
+        if (!list) {
+            faults.add(cue.error(list.error().message()));
+            continue;
+        }
+        std::vector<std::string> cues = rules.sides[*list].cues;
+        if (cues.empty()) continue;  // told already
+        const int dark = static_cast<int>(cues.size());
+        if (std::ranges::find(cues, kDark) == cues.end()) cues.emplace_back(kDark);
+        faults.take(cue.choice(cues), [&](std::size_t index) {
+            with.push_back({*list, static_cast<int>(index) == dark ? -1 : static_cast<int>(index)});
+        });
+    }
+    TRY(faults.result());
+    return with;
+}
+
 // `to`: receives the names of the cues that are to follow it.
 Result<Cue> readCue(const ConfigNode& node, const CueRules& rules, std::vector<ConfigNode>& to) {
     Cue cue;
@@ -114,6 +141,7 @@ Result<Cue> readCue(const ConfigNode& node, const CueRules& rules, std::vector<C
     fields.read("fade", cue.fade, [&](const ConfigNode& value) { return readFade(value, rules.version); });
     fields.optional().read("follow", follow, [&](const ConfigNode& value) { return readFollow(value, rules.version); });
     since2("block", cue.blocks, [](const ConfigNode& value) { return value.boolean(); });
+    since2("with", cue.with, [&](const ConfigNode& value) { return readWith(value, rules); });
     since2("parts", cue.parts, [&](const ConfigNode& list) -> Result<std::vector<CuePart>> {
         std::vector<CuePart> parts;
         ConfigFaults faults;
@@ -157,6 +185,16 @@ Time Cue::length() const {
     Time end = wait + fade.longer();
     for (const CuePart& part : parts) end = std::max(end, part.wait.value_or(wait) + part.fade.value_or(fade).longer());
     return end;
+}
+
+Result<std::size_t> readStart(const ConfigNode& node, const std::vector<Cue>& cues, const std::vector<std::string>& others) {
+    std::vector<std::string> names = namesOf(cues);
+    for (const std::string& start : others) {
+        if (std::ranges::find(names, start) != names.end() && TRY(node.text()) == start)
+            return node.error(fmt::format("'{}' is no cue here, but a cue is called so, too; rename the cue", start));
+        names.emplace_back(start);
+    }
+    return node.choice(names);
 }
 
 Result<std::vector<Cue>> readCues(const ConfigNode& node, const CueRules& rules) {

@@ -55,6 +55,7 @@ struct Cue {
     int times = 0;               // so often in a row; then the next one. 0: always
     bool blocks = true;          // what the look does not name is dark; else it stays
     std::vector<CuePart> parts;
+    std::vector<CueList::Cue::SideCue> with;  // `list`: index into Show::sides
 
     // From when it is entered until its look is whole.
     Time length() const;
@@ -67,6 +68,11 @@ struct CueRules {
     std::vector<std::string> looks;  // of the file, in its order
     std::vector<std::string> sources;
     std::vector<SourceId> ids;  // of `sources`
+    struct Side {
+        std::string name;
+        std::vector<std::string> cues;  // empty: they are faulty
+    };
+    std::vector<Side> sides;  // whose cues the cues may bring with them
 };
 
 // Since this version of the show file cues may track, and may have the keys that say how they move.
@@ -84,7 +90,10 @@ void readTracking(std::int64_t version, ConfigFields& fields, std::string_view k
     });
 }
 
-// Reads the cues of a show file. Error: file, line, column, key, advice, for all faults.
+// How a list starts: with a cue, as index into `cues`, or with one of `others`, after these.
+Result<std::size_t> readStart(const ConfigNode& node, const std::vector<Cue>& cues, const std::vector<std::string>& others);
+
+// Reads the cues of a list. Error: file, line, column, key, advice, for all faults.
 Result<std::vector<Cue>> readCues(const ConfigNode& node, const CueRules& rules);
 
 }  // namespace fantascope::show

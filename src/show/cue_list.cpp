@@ -42,7 +42,12 @@ std::vector<Movement> CueList::Cue::movements(Time entered, Time at, Time least)
         Movement& movement = movements.emplace_back(Movement{.start = start});
         for (const Timing& timing : outputs) movement.outputs.push_back(fadeNow(timing));
         for (const Timing& timing : levels) movement.levels.push_back(fadeNow(timing));
-        for (const Timing& timing : relays) movement.relays.push_back(timing.start == start);
+        for (std::size_t relay = 0; relay < relays.size(); ++relay) {
+            const bool tracks = relay < tracksRelays.size() && tracksRelays[relay] != 0;
+            movement.relays.push_back(relays[relay].start != start ? Movement::Relay::Stays
+                                      : tracks                     ? Movement::Relay::GoesOn
+                                                                   : Movement::Relay::Switches);
+        }
         for (const Layer& layer : layers)
             movement.layers.push_back({layer.which.output, layer.which.source, fadeNow(layer.timing)});
     }

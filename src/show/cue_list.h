@@ -11,11 +11,15 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace fantascope::show {
+
+// A show has at most so many lists beside the main one.
+constexpr std::size_t kMostSides = 8;
 
 // How what is seen moves to another look. What becomes brighter comes in, what becomes darker goes
 // out.
@@ -36,7 +40,10 @@ struct Movement {
     Time start{};
     Time begun{};                                          // from when sources that come play; `start` or earlier
     std::vector<std::optional<Fade>> outputs{}, levels{};  // of each of a Look's
-    std::vector<std::uint8_t> relays{};                    // 1: switches
+    // What becomes of a relay. GoesOn: the list has it as the look says, but what another list has
+    // switched since stays. Releases: the list has no say in it any more.
+    enum class Relay : std::uint8_t { Stays, GoesOn, Switches, Releases };
+    std::vector<Relay> relays{};
     struct Layer {
         std::size_t output = 0;
         SourceId source;
@@ -45,7 +52,8 @@ struct Movement {
     std::vector<Layer> layers{};  // that do not move as their output does
 };
 
-// A show's cues with every name looked up in one site: all that playback needs. See Show::bind.
+// A show's cues with every name looked up in one site: all that playback needs. The main list, and
+// the lists that play beside it. See Show::bind.
 struct CueList {
     // Some things that move to a cue's look in their own time. No thing is in two parts of a cue.
     struct Part {
@@ -68,6 +76,12 @@ struct CueList {
         std::vector<Part> parts = {};      // all else moves by `wait` and `fade`
         std::vector<int> followers = {};   // one of these follows, by chance; empty: the one after it in the list
         int times = 0;                     // so often in a row; then the one after it in the list. 0: always
+        std::vector<std::uint8_t> tracksRelays = {};  // 1: has a relay stay as it was, one for each relay; a missing one: 0
+        struct SideCue {
+            std::size_t list = 0;  // index into `sides`
+            int cue = -1;          // -1: the dark before the first
+        };
+        std::vector<SideCue> with = {};  // that are entered together with this one; only of the main list
 
         // From when the cue is entered until it begins to change what is seen.
         Time firstWait() const {
@@ -87,6 +101,10 @@ struct CueList {
     };
     std::vector<Cue> cues;
     bool loops = false;        // the first cue comes after the last one
+    std::vector<std::shared_ptr<const CueList>> sides = {};  // for the same site; they have no sides of their own
+    std::string name = {};     // of a side
+    std::optional<int> start = {};  // of a side: entered when the main list leaves the dark
+    std::vector<std::size_t> windLists = {};  // which list moves the wind of each output: 0 is this one, else the side, from 1; a missing one: 0
     Look dark;                 // what is seen before the first cue: black pictures, levels 0, relays in their safe states
     Time goInterval{};         // after a cue was entered, GO is ignored for this long
     double farthestShift = 0;  // a correction that moves a corner of a projector's picture farther is ignored, pixels

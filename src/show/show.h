@@ -4,6 +4,7 @@
 #include "show/cue.h"
 #include "show/cue_list.h"
 #include "show/schedule/schedule.h"
+#include "show/side_list.h"
 #include "show/show_state.h"
 #include "show/site/site.h"
 #include "show/source.h"
@@ -52,6 +53,7 @@ struct Show {
     std::optional<std::size_t> start;  // index into `cues`: entered as the show begins; none: dark until an input
     std::optional<Schedule> schedule;  // by which it plays from its start on; then `start` is empty
     bool loops = false;                // the first cue comes after the last
+    std::vector<SideList> sides;       // that play beside `cues`
 
     // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist.
     // Sources get their ids from `names`, so a source keeps its id when the show is read again.
@@ -60,9 +62,13 @@ struct Show {
     // Reads the only show of a program: its sources have the ids 0, 1, 2, ... in their order.
     static Result<Show> load(const std::filesystem::path& fileOrFolder);
 
-    // Looks every name up in `site`. Error: place in the show file, and what the site has instead.
+    // bound() of this show.
     Result<CueList> bind(const Site& site) const;
 
+    // The cues of a list, by Input::list.
+    const std::vector<Cue>& cuesOf(int list) const {
+        return list == 0 ? cues : sides[static_cast<std::size_t>(list) - 1].cues;
+    }
     // Whether the show waits for no input once a cue is entered: each cue from there on follows the
     // one before.
     bool needsNoGoFrom(std::size_t cue) const;

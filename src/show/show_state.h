@@ -64,6 +64,14 @@ struct Look {
     friend bool operator==(const Look&, const Look&) = default;
 };
 
+// Where a list of cues is.
+struct ListPlace {
+    int cue = -1;               // index into its cues of the current one; -1 before the first
+    int loaded = -1;            // the cue that GO is to enter; -1: the one after the current one
+    std::optional<int> next{};  // the cue that GO enters; nothing: there is none
+    friend bool operator==(const ListPlace&, const ListPlace&) = default;
+};
+
 // Where the cues are, and what the operator does to them.
 struct Controls {
     int cue = -1;               // index into Show::cues of the current cue; -1 before the first
@@ -75,6 +83,7 @@ struct Controls {
     bool frozen = false;        // what is seen is kept, whatever the cues do
     float master = 1;           // the factor of pictures and levels that is wanted
     bool locked = false;        // nothing but darkness is taken from hand controller, contacts and windows
+    std::vector<ListPlace> sides{};  // of each list that plays beside the main one
     friend bool operator==(const Controls&, const Controls&) = default;
 };
 

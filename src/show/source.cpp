@@ -31,6 +31,8 @@ constexpr double kSteepestWave = 0.1;        // height to length
 constexpr double kSmallestFacet = 1.0 / 50;  // of the ball's radius
 constexpr double kLongestTurn = 3600;
 constexpr double kSlowest = 0.01, kFastest = 10;  // videos, casts
+constexpr double kLongestVideo = 86400;           // seconds
+constexpr int kMostTimes = 10000;
 constexpr double kWidestLamp = 2;                 // metres
 constexpr int kMostSamples = 128;
 constexpr std::size_t kMostLamps = 8, kMostActors = 50, kMostBeams = 8;
@@ -171,10 +173,24 @@ Result<VideoSource> readAs(const ConfigNode& node) {
         return video;
     }
     ConfigFields fields(node);
+    std::optional<bool> loops;
+    std::size_t atEnd = 0;
     fields.read("file", video.file, readVideoFile);
-    fields.optional().boolean("loop", video.loop);
+    fields.optional().time("from", video.from, 0, kLongestVideo);
+    fields.optional().read("to", video.to, [](const ConfigNode& value) -> Result<std::optional<Time>> {
+        return std::optional(fromSeconds(TRY(value.number(0, kLongestVideo, "s"))));
+    });
+    fields.optional().read("loop", loops,
+                           [](const ConfigNode& value) -> Result<std::optional<bool>> { return std::optional(TRY(value.boolean())); });
+    fields.optional().integer("times", video.times, 1, kMostTimes);
+    fields.optional().choice("at_end", atEnd, {"stay", "dark"});
     fields.optional().number("speed", video.speed, kSlowest, kFastest);
     TRY(fields.finish());
+    if (video.to && *video.to <= video.from) return node.error("'to' comes after 'from', in seconds of the video");
+    if (loops && video.times > 0) return node.error("give one of 'loop' and 'times'");
+    if (loops == false) video.times = 1;
+    if (atEnd != 0 && video.times == 0) return node.error("this video has no end; add 'times', or remove 'at_end'");
+    video.endsDark = atEnd != 0;
     return video;
 }
 

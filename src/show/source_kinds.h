@@ -3,6 +3,8 @@
 // list. Code that handles every kind visits it by type, so a new kind does not compile until it is
 // handled everywhere. docs/show-format.md describes the keys; kKey is the key of a kind.
 
+#include "core/clock.h"
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -73,11 +75,14 @@ struct ImageSource {
     std::filesystem::path file;
 };
 
-// A video. The numbers have the meaning of render::VideoSource's.
+// A video, or a part of it. The numbers have the meaning of render::VideoSource's.
 struct VideoSource {
     static constexpr std::string_view kKey = "video";
     std::filesystem::path file;
-    bool loop = true;
+    Time from{};
+    std::optional<Time> to;  // none: the video's end
+    int times = 0;
+    bool endsDark = false;
     double speed = 1;
 };
 

@@ -52,8 +52,8 @@ struct RunningShow {
         return {clock.now(), show::Input::Kind::Jump, static_cast<int>(valueOf(show.cueNamed(cue)))};
     }
     int buttonOf(show::Button wanted) const {
-        for (const auto& [number, button] : site.buttons)
-            if (button == wanted) return number;
+        for (const show::SiteButton& button : site.buttons)
+            if (button.button == wanted) return button.number;
         FANTASCOPE_CHECK(false, "the default site has all buttons");
     }
 };

@@ -192,7 +192,7 @@ TEST_F(VideoOnAnOutput, shows_the_frame_of_the_moment) {
 
 TEST_F(VideoOnAnOutput, holds_its_last_frame_where_it_does_not_loop_and_goes_at_its_speed) {
     VideoSource once = video(25, 20), slow = video(25, 21);
-    once.loop = false;
+    once.times = 1;
     slow.speed = 0.5;
     DrawnOutput output(kVideo, rectangleCorners(kVideo.x, kVideo.y), {once, slow});
     const auto shown = [&](std::uint32_t source, Time time) { return numberOn(output.frame({{source, 1}}, time)); };

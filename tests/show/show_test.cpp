@@ -269,9 +269,9 @@ TEST(ShowFile, pictures_and_videos_are_files_and_a_camera_is_none) {
     ASSERT_TRUE(loaded.show) << loaded.show.error().message();
     const auto& sources = loaded.show->sources;
     EXPECT_EQ(std::get<ImageSource>(sources[1].picture).file, loaded.folder / file);
-    EXPECT_TRUE(std::get<VideoSource>(sources[2].picture).loop);
+    EXPECT_EQ(std::get<VideoSource>(sources[2].picture).times, 0);
     EXPECT_EQ(std::get<VideoSource>(sources[2].picture).speed, 1);
-    EXPECT_FALSE(std::get<VideoSource>(sources[3].picture).loop);
+    EXPECT_EQ(std::get<VideoSource>(sources[3].picture).times, 1);
     EXPECT_EQ(std::get<VideoSource>(sources[3].picture).speed, 0.5);
     EXPECT_TRUE(std::holds_alternative<CameraSource>(sources[4].picture));
     for (const std::size_t named : {1u, 2u, 3u}) EXPECT_THAT(filesOf(sources[named]), ElementsAre(loaded.folder / file));

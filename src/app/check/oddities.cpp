@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -52,13 +53,32 @@ std::string sizeAdvice(const ShapedSource& shown, const show::Output& output) {
         .message();
 }
 
+// Cues of a list that GO never reaches, or that are followed before they begin.
+void noteUnreached(const std::vector<show::Cue>& cues, std::optional<std::size_t> start, bool loops, const std::string& file,
+                   std::vector<std::string>& oddities) {
+    for (std::size_t cue = 0; cue < cues.size(); ++cue) {
+        const show::Cue& each = cues[cue];
+        if (start && cue < *start && !loops)
+            oddities.push_back(fmt::format("{}: the show starts with '{}', so GO never reaches the cue '{}' before it", file,
+                                           cues[*start].name, each.name));
+        Time begins = each.wait;
+        for (const show::CuePart& part : each.parts) begins = std::min(begins, part.wait.value_or(each.wait));
+        if (each.follow && *each.follow <= begins && begins > Time{})
+            oddities.push_back(
+                fmt::format("{}: the cue '{}' waits {:g} s, and the next one follows after {:g} s: nothing of it is seen", file,
+                            each.name, seconds(begins), seconds(*each.follow)));
+    }
+}
+
 }  // namespace
 
 void noteShapes(const show::CueList& cues, const show::BySource<ShapedSource>& shaped, const show::Site& site,
                 std::vector<std::string>& oddities) {
     std::set<std::pair<show::SourceId, std::string>> told;
     std::set<std::string> unknown;
-    for (const auto& cue : cues.cues)
+    std::vector<show::CueList::Cue> all = cues.cues;
+    for (const auto& side : cues.sides) all.insert(all.end(), side->cues.begin(), side->cues.end());
+    for (const auto& cue : all)
         for (std::size_t i = 0; i < site.outputs.size(); ++i)
             for (const show::LayerState& layer : cue.look.outputs[i].layers) {
                 const show::Output& output = site.outputs[i];
@@ -99,8 +119,12 @@ void noteNegatives(const show::Source& source, std::vector<std::string>& odditie
 
 void noteUnseen(const show::Show& show, std::vector<std::string>& oddities) {
     const std::string file = show.file.string();
+    const auto has = [](const std::vector<show::Cue>& cues, std::size_t look) {
+        return std::ranges::find(cues, look, &show::Cue::look) != cues.end();
+    };
     for (std::size_t look = 0; look < show.looks.size(); ++look)
-        if (std::ranges::none_of(show.cues, [&](const show::Cue& cue) { return cue.look == look; }))
+        if (!has(show.cues, look) &&
+            std::ranges::none_of(show.sides, [&](const show::SideList& side) { return has(side.cues, look); }))
             oddities.push_back(fmt::format("{}: no cue has the look '{}'", file, show.looks[look].name));
     const auto isIn = [&](const show::Source& source, const show::NamedLook& look) {
         return std::ranges::any_of(look.outputs, [&](const auto& output) {
@@ -111,18 +135,8 @@ void noteUnseen(const show::Show& show, std::vector<std::string>& oddities) {
     for (const show::Source& source : show.sources)
         if (std::ranges::none_of(show.looks, [&](const show::NamedLook& look) { return isIn(source, look); }))
             oddities.push_back(source.at.error("no look shows this source").message());
-    for (std::size_t cue = 0; cue < show.cues.size(); ++cue) {
-        const show::Cue& each = show.cues[cue];
-        if (show.start && cue < *show.start && !show.loops)
-            oddities.push_back(fmt::format("{}: the show starts with '{}', so GO never reaches the cue '{}' before it", file,
-                                           show.cues[*show.start].name, each.name));
-        Time begins = each.wait;
-        for (const show::CuePart& part : each.parts) begins = std::min(begins, part.wait.value_or(each.wait));
-        if (each.follow && *each.follow <= begins && begins > Time{})
-            oddities.push_back(
-                fmt::format("{}: the cue '{}' waits {:g} s, and the next one follows after {:g} s: nothing of it is seen", file,
-                            each.name, seconds(begins), seconds(*each.follow)));
-    }
+    noteUnreached(show.cues, show.start, show.loops, file, oddities);
+    for (const show::SideList& side : show.sides) noteUnreached(side.cues, side.start, side.loops, file, oddities);
 }
 
 void noteUnnamed(const show::Show& show, const show::Site& site, std::vector<std::string>& oddities) {

@@ -236,7 +236,9 @@ DeviceTrial::Names contactNames(const show::Site& site, std::size_t bank) {
 
 DeviceTrial::Names buttonNames(const show::Site& site) {
     DeviceTrial::Names names;
-    for (const auto& [number, button] : site.buttons) names[static_cast<std::size_t>(number)] = show::nameOf(button);
+    for (const auto& [number, button, list] : site.buttons)
+        names[static_cast<std::size_t>(number)] =
+            list.empty() ? std::string(show::nameOf(button)) : fmt::format("{} of {}", show::nameOf(button), list);
     return names;
 }
 

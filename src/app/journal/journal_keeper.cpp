@@ -72,6 +72,7 @@ void JournalKeeper::tick(const show::journal::Figures& now) {
     replica_.stateAt(showTime, state_);
     show::journal::State state{.at = written_.at, .controls = state_, .corrects = state_.corrects, .cue = written_.cue};
     state.controls.next = std::nullopt;
+    for (show::ListPlace& side : state.controls.sides) side.next = std::nullopt;
     if (state.controls.cue != written_.controls.cue)
         state.cue = state.controls.cue < 0 ? "" : show_.cues[static_cast<std::size_t>(state.controls.cue)].name;
     if (state != written_ || showTime - written_.at >= kStateEvery) {

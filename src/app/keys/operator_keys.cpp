@@ -44,19 +44,25 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         input.kind = kind;
         takeOver(input);
     };
+    const auto enter = [&](Kind kind) {
+        input.list = list_;
+        take(kind);
+    };
     const auto toggle = [&](Kind kind) {
         input.kind = kind;
         inputs_.submit(input);
     };
     switch (*action) {
         case Action::Go:
-            return take(Kind::Go);
+            return enter(Kind::Go);
         case Action::Back:
-            return take(Kind::Back);
+            return enter(Kind::Back);
         case Action::LoadPrevious:
             return load(input, -1);
         case Action::LoadNext:
             return load(input, 1);
+        case Action::NextList:
+            return chooseList(input.at);
         case Action::Blackout:
             return take(Kind::Blackout);
         case Action::Pause:
@@ -94,10 +100,21 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
 // Loads the cue `step` cues after the one that GO would enter.
 void OperatorKeys::load(show::Input input, int step) {
     replica_.stateAt(input.at, state_);
-    const int last = static_cast<int>(replica_.playback().cues().cues.size()) - 1;
+    const show::CueList& main = replica_.playback().cues();
+    const auto side = static_cast<std::size_t>(list_) - 1;
+    const int last = static_cast<int>((list_ == 0 ? main : *main.sides[side]).cues.size()) - 1;
+    const auto& next = list_ == 0 ? state_.next : state_.sides[side].next;
     input.kind = Kind::Load;
-    input.cue = std::clamp(state_.next.value_or(last + 1) + step, 0, last);
+    input.list = list_;
+    input.cue = std::clamp(next.value_or(last + 1) + step, 0, last);
     inputs_.submit(input);
+}
+
+void OperatorKeys::chooseList(Time at) {
+    const auto& sides = replica_.playback().cues().sides;
+    if (sides.empty()) return;
+    list_ = (list_ + 1) % (static_cast<int>(sides.size()) + 1);
+    events_.append({at, show::event::ListChosen{list_ == 0 ? "" : sides[static_cast<std::size_t>(list_) - 1]->name}});
 }
 
 void OperatorKeys::dim(show::Input input, int step) {

@@ -43,6 +43,8 @@ public:
     // Takes a key that was pressed at a window at `moment`. Thread: any.
     void pressedAtScreen(const Key& key, Time moment) { screenKeys_.append({key, moment}); }
 
+    // The list that the keys for cues go to, as Input::list. Thread: any.
+    int list() const { return list_; }
     // The run time of the schedule's next press; Time::max() if there is none. Thread: any.
     Time nextGo() const { return nextGo_; }
     // Restores the terminal's settings. Call it after the last tick.
@@ -56,6 +58,7 @@ private:
     void press(const Key& key, show::Input::Source source, Time moment);
     void takeOver(const show::Input& input);
     void load(show::Input input, int step);
+    void chooseList(Time at);
     void dim(show::Input input, int step);
 
     show::InputLog& inputs_;
@@ -70,6 +73,7 @@ private:
     Lateness lateness_;
     GoSchedule schedule_;
     std::atomic<Time> nextGo_ = Time::max();
+    std::atomic<int> list_ = 0;
     QuitKey quitKey_;
     const Actions actions_;
 };

@@ -20,6 +20,7 @@ struct RunKey {
         Back,
         LoadPrevious,
         LoadNext,
+        NextList,
         Blackout,
         Pause,
         Freeze,
@@ -41,11 +42,12 @@ struct RunKey {
 };
 
 // All keys. README.md has the same table.
-constexpr std::array<RunKey, 17> kRunKeys = {
+constexpr std::array<RunKey, 18> kRunKeys = {
     {{letterKey(' '), "space", "GO: the loaded cue, or the next one; after a pause: go on", RunKey::Action::Go},
      {letterKey('b'), "b", "back: the cue before", RunKey::Action::Back},
      {{Key::Name::Up}, "up", "load the cue before the one that GO would enter", RunKey::Action::LoadPrevious},
      {{Key::Name::Down}, "down", "load the cue after the one that GO would enter", RunKey::Action::LoadNext},
+     {{Key::Name::Tab}, "Tab", "GO, back, up and down go to the next cue list", RunKey::Action::NextList},
      {letterKey('0'), "0", "blackout; again: light", RunKey::Action::Blackout},
      {letterKey('p'), "p", "pause: the cues stand still; again: go on", RunKey::Action::Pause},
      {letterKey('f'), "f", "freeze what is seen; again: show the cues", RunKey::Action::Freeze},

@@ -1,5 +1,6 @@
 #include "app/live/hand.h"
 
+#include "show/names.h"
 #include "show/play/contact_inputs.h"
 
 #include <array>
@@ -26,7 +27,8 @@ Hand::Hand(const show::Show& show, show::InputLog& inputs, const show::Site& sit
       devices_(devices),
       showClock_(showClock),
       events_(events),
-      buttons_(site.buttons),
+      sides_(show::namesOf(show.sides)),
+      buttons_(site.buttons, sides_),
       inputs_(inputs),
       replica_(inputs),
       outcomes_(inputs.reader()) {
@@ -45,13 +47,14 @@ void Hand::tick(Time moment) {
         const auto event = devices_.cueController->poll();
         if (!event) break;
         submit(buttons_.inputFor(event->button, event->pressed, showClock_.showTime(event->at)), event->at);
-        for (const auto& [number, button] : site_.buttons)
-            if (number == event->button && button >= show::Button::Edit) edit(button, event->pressed);
+        for (const show::SiteButton& button : site_.buttons)
+            if (button.number == event->button && button.button >= show::Button::Edit) edit(button.button, event->pressed);
     }
     for (std::size_t bank = 0; bank < devices_.contactBanks.size(); ++bank)
         while (const auto change = devices_.contactBanks[bank]->poll())
             submit(
-                show::inputFor(site_, bank, change->contact, change->closed, change->witnessed, showClock_.showTime(change->at)),
+                show::inputFor(site_, bank, change->contact, change->closed, change->witnessed, showClock_.showTime(change->at),
+                               sides_),
                 change->at);
     const Time showTime = showClock_.showTime(moment);
     inputs_.foresee(showTime);
@@ -68,31 +71,45 @@ void Hand::tell(Time showTime) {
         if (const auto on = show::kHolds[i].on; told_.*on != state_.*on)
             events_.append({showTime, show::event::HoldChanged{static_cast<show::Hold>(i), state_.*on}});
     if (told_.master != state_.master) events_.append({showTime, show::event::MasterChanged{state_.master}});
-    // News of a cue by its number; -1: of none.
-    const auto named = [&](auto news, int cue) {
-        news.cue = cue;
-        news.cues = static_cast<int>(show_.cues.size());
-        if (cue < 0) return news;
-        news.name = show_.cues[static_cast<std::size_t>(cue)].name;
-        news.number = show_.cues[static_cast<std::size_t>(cue)].number;
-        return news;
-    };
-    if (told_.cue != state_.cue) events_.append({showTime, named(show::event::CueEntered(), state_.cue)});
-    if (told_.loaded != state_.loaded && (state_.loaded >= 0 || told_.cue == state_.cue))
-        events_.append({showTime, named(show::event::CueLoaded(), state_.loaded)});
+    tellCues(showTime, {told_.cue, told_.loaded}, {state_.cue, state_.loaded}, 0);
+    told_.sides.resize(state_.sides.size());
+    for (std::size_t side = 0; side < state_.sides.size(); ++side)
+        tellCues(showTime, told_.sides[side], state_.sides[side], static_cast<int>(side) + 1);
     told_ = state_;
 }
 
-ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
+// What has changed in a list.
+void Hand::tellCues(Time showTime, const show::ListPlace& told, const show::ListPlace& now, int list) {
+    const std::vector<show::Cue>& cues = show_.cuesOf(list);
+    // News of a cue by its number; -1: of none.
+    const auto named = [&](auto news, int cue) {
+        if (list > 0) news.list = sides_[static_cast<std::size_t>(list) - 1];
+        news.cue = cue;
+        news.cues = static_cast<int>(cues.size());
+        if (cue < 0) return news;
+        news.name = cues[static_cast<std::size_t>(cue)].name;
+        news.number = cues[static_cast<std::size_t>(cue)].number;
+        return news;
+    };
+    if (told.cue != now.cue) events_.append({showTime, named(show::event::CueEntered(), now.cue)});
+    if (told.loaded != now.loaded && (now.loaded >= 0 || told.cue == now.cue))
+        events_.append({showTime, named(show::event::CueLoaded(), now.loaded)});
+}
+
+ButtonLight Hand::lightOf(const show::SiteButton& button, Time showTime) const {
+    const int list = show::listNamed(button.list, sides_);
+    const show::ListPlace place = list > 0    ? state_.sides[static_cast<std::size_t>(list) - 1]
+                                  : list == 0 ? show::ListPlace{state_.cue, state_.loaded, state_.next}
+                                              : show::ListPlace{};
     using State = ButtonLight::State;
     const auto lit = [&](bool on, State state) { return on ? state : State::Off; };
     const auto state = [&] {
-        switch (button) {
+        switch (button.button) {
             case show::Button::Go:
-                if (replica_.playback().fadesAt(showTime)) return State::Active;
-                return lit(!state_.locked && !state_.panic && (state_.next || state_.paused), State::Ready);
+                if (list >= 0 && replica_.playback().fadesAt(showTime, list)) return State::Active;
+                return lit(!state_.locked && !state_.panic && (place.next || (state_.paused && list >= 0)), State::Ready);
             case show::Button::Back:
-                return lit(!state_.locked && !state_.panic && state_.cue > 0, State::Ready);
+                return lit(!state_.locked && !state_.panic && place.cue > 0, State::Ready);
             case show::Button::Blackout:
                 return lit(state_.blackout, State::Alarm);
             case show::Button::Pause:
@@ -109,16 +126,15 @@ ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
                 return lit(editing(), State::Ready);
         }
     };
-    return {state(), std::string(kWords[static_cast<std::size_t>(button)])};
+    return {state(), std::string(kWords[static_cast<std::size_t>(button.button)])};
 }
 
 void Hand::light(Time showTime) {
     if (!devices_.cueController) return;
     for (std::size_t i = 0; i < site_.buttons.size(); ++i) {
-        const auto& [number, button] = site_.buttons[i];
-        ButtonLight light = lightOf(button, showTime);
+        ButtonLight light = lightOf(site_.buttons[i], showTime);
         if (light == lights_[i]) continue;
-        devices_.cueController->light(number, light);
+        devices_.cueController->light(site_.buttons[i].number, light);
         lights_[i] = std::move(light);
     }
 }

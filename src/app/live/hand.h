@@ -36,15 +36,17 @@ public:
     std::function<bool()> editing = [] { return false; };
 
 private:
-    ButtonLight lightOf(show::Button button, Time showTime) const;
+    ButtonLight lightOf(const show::SiteButton& button, Time showTime) const;
     void light(Time showTime);
     void tell(Time showTime);
+    void tellCues(Time showTime, const show::ListPlace& told, const show::ListPlace& now, int list);
 
     const show::Show& show_;
     const show::Site& site_;
     Devices& devices_;
     const show::ShowClock showClock_;
     show::EventLog& events_;
+    const std::vector<std::string> sides_;  // the names of the show's side lists
     show::CueButtons buttons_;
     Lateness lateness_;
     show::InputLog& inputs_;

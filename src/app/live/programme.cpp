@@ -99,7 +99,12 @@ Result<Picture> readPicture(const show::ImageSource& source, const Reading&) {
 }
 
 Result<Picture> readPicture(const show::VideoSource& source, const Reading& reading) {
-    return Picture{render::VideoSource{TRY(render::VideoStream::open(source.file, reading.pace)), source.loop, source.speed}, {}};
+    auto stream = TRY(render::VideoStream::open(source.file, reading.pace, source.from));
+    if (const Time length = stream->content().length; source.to && *source.to > length)
+        return Error(fmt::format("{}: it is {:.3f} s long, so it cannot play to {:.3f} s", source.file.string(), seconds(length),
+                                 seconds(*source.to)));
+    return Picture{
+        render::VideoSource{std::move(stream), source.from, source.to, source.times, source.endsDark, source.speed}, {}};
 }
 
 Result<Picture> readPicture(const show::CameraSource&, const Reading& reading) {
@@ -246,6 +251,7 @@ Result<void> compareShadow(const show::Source& source, const render::PictureSour
 // The outputs that show a source in any cue.
 std::set<std::size_t> outputsOf(show::SourceId source, const show::CueList& cues) {
     std::set<std::size_t> outputs;
+    for (const auto& side : cues.sides) outputs.merge(outputsOf(source, *side));
     for (const show::CueList::Cue& cue : cues.cues)
         for (std::size_t output = 0; output < cue.look.outputs.size(); ++output)
             if (std::ranges::any_of(cue.look.outputs[output].layers,

@@ -33,6 +33,7 @@ enum Part {
     Fade,
     Loaded,
     Next,
+    Sides,
     Schedule,
     Left,
     Late,
@@ -45,10 +46,10 @@ using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
 constexpr line::Part kShortening[] = {
-    line::Scores, line::Rate,   line::Next,      line::Schedule, line::Next,      line::Cue,    line::Cue,
+    line::Scores, line::Rate,   line::Next,      line::Schedule, line::Sides, line::Sides, line::Next,      line::Cue,    line::Cue,
     line::Late,   line::Fade,   line::Left,      line::Next,     line::Next,      line::Loaded, line::Locked,
     line::Paused, line::Frozen, line::SettingUp, line::Cue,      line::SettingUp, line::Loaded, line::Locked,
-    line::Master, line::Paused, line::Frozen,    line::Panic,    line::Blackout,  line::Cue};
+    line::Master, line::Paused, line::Frozen,    line::Sides,    line::Panic,    line::Blackout,  line::Cue};
 
 Forms cueForms(const RunStatus& status) {
     const int cue = status.controls.cue;
@@ -65,6 +66,23 @@ Forms nextForms(const RunStatus& status) {
     const std::string note = status.nextNote.empty() ? "" : fmt::format(" ({})", status.nextNote);
     return {"next: " + status.nextName + in + note, "next: " + status.nextName + in,
             "next: " + fitted(status.nextName, kShortName) + in, in.empty() ? "" : "next" + in, ""};
+}
+
+Forms sideForms(const RunStatus& status) {
+    Forms forms{"", "", "", ""};  // with what comes, without it, the list that has the keys, nothing
+    for (const RunStatus::Side& side : status.sides) {
+        const std::string name = side.hasKeys ? fmt::format("[{}]", side.name) : side.name;
+        const std::string now = fmt::format("{}: {}", name, side.cueName.empty() ? "dark" : side.cueName);
+        const std::string next =
+            side.untilNext ? fmt::format(" > {} in {}", side.nextName, shortDuration(*side.untilNext)) : std::string();
+        const auto add = [&](std::size_t form, const std::string& text) {
+            forms[form] += (forms[form].empty() ? "" : kBetween) + text;
+        };
+        add(0, now + next);
+        add(1, now);
+        if (side.hasKeys) add(2, fmt::format("[{}]", fitted(side.name, kShortName)));
+    }
+    return forms;
 }
 
 std::string scoresOf(const RunStatus& status) {
@@ -100,6 +118,7 @@ std::array<Forms, line::kParts> partsOf(const RunStatus& status) {
     else if (status.fadeLeft > Time{})
         parts[line::Fade] = {"fading " + shortDuration(status.fadeLeft), ""};
     parts[line::Next] = nextForms(status);
+    parts[line::Sides] = sideForms(status);
     parts[line::Schedule] = {status.schedule, ""};
     parts[line::Left] = {status.left ? shortDuration(*status.left) + " left" : "at " + shortDuration(status.showTime), ""};
     parts[line::Late] = {fmt::format("{} late", status.lateFrames), ""};

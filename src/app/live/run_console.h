@@ -30,6 +30,13 @@ struct RunStatus {
     Time waitLeft{};                        // until the current cue begins to change what is seen; 0: it has begun
     Time fadeLeft{};                        // until its look is whole; 0: it is
     std::optional<Time> untilNext;          // until the next cue comes by a follow or by the schedule; none: it waits
+    struct Side {
+        std::string name;
+        bool hasKeys = false;            // GO, back and load go to it
+        std::string cueName{}, nextName{};  // empty: it is dark; nothing follows by itself
+        std::optional<Time> untilNext{};
+    };
+    std::vector<Side> sides;                // the lists beside the main one
     std::string schedule;                   // what it brings next: "23:00 dark"; empty: nothing
     std::optional<Time> left;               // of the run; none: the run has no length
     bool settingUp = false;                 // the keys are those of setting up

@@ -108,7 +108,7 @@ void addEvents(const show::EventLog& events, RunReport& report) {
     show::EventLog::Reader reader = events.reader();
     while (const show::Event* const event = reader.next()) {
         if (const auto* const entered = std::get_if<show::event::CueEntered>(&event->what))
-            report.cues.push_back({entered->name, event->at});
+            report.cues.push_back({entered->name, event->at, entered->list});
         else if (const auto* const decided = std::get_if<show::event::InputDecided>(&event->what)) {
             ++report.inputsBySource[std::string(show::nameOf(decided->input.input.source))];
             ++report.inputsByOutcome[std::string(show::nameOf(decided->input.outcome))];
@@ -186,7 +186,10 @@ Report jsonOf(const RunReport& report) {
     json["resumed"] = nullptr;
     if (report.resumed) json["resumed"] = {{"cue", report.resumed->name}, {"at", seconds(report.resumed->entered)}};
     json["cues"] = Report::array();
-    for (const CueReport& cue : report.cues) json["cues"].push_back({{"name", cue.name}, {"entered", seconds(cue.entered)}});
+    for (const CueReport& cue : report.cues) {
+        json["cues"].push_back({{"name", cue.name}, {"entered", seconds(cue.entered)}});
+        if (!cue.list.empty()) json["cues"].back()["list"] = cue.list;
+    }
     json["faults"] = Report::array();
     for (const FaultReport& fault : report.faults) {
         Report entry = {{"at", seconds(fault.at)}, {"what", fault.what}};

@@ -51,6 +51,7 @@ struct OutputReport {
 struct CueReport {
     std::string name;
     Time entered{};
+    std::string list{};  // the side list; empty: the main one
 };
 
 // What was told of the patterns, and when.

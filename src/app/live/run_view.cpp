@@ -6,7 +6,7 @@
 
 namespace fantascope::app {
 
-RunStatus RunView::at(Time moment, Time nextGo) {
+RunStatus RunView::at(Time moment, Time nextGo, int list) {
     const Time time = showClock_.showTime(moment), runTime = showClock_.runTime(moment);
     replica_.stateAt(time, state_);
     const auto& cues = show_.cues;
@@ -31,6 +31,15 @@ RunStatus RunView::at(Time moment, Time nextGo) {
     if (length_) status.left = std::max(Time{}, *length_ - runTime);
     if (follower && after && follower != after) status.loadedName = cues[static_cast<std::size_t>(*after)].name;  // GO's
     if (state_.loaded >= 0) status.loadedName = cues[static_cast<std::size_t>(state_.loaded)].name;
+    for (std::size_t side = 0; side < state_.sides.size(); ++side) {
+        const show::SideList& sideList = show_.sides[side];
+        const int which = static_cast<int>(side) + 1;
+        RunStatus::Side& told = status.sides.emplace_back(RunStatus::Side{.name = sideList.name, .hasKeys = which == list});
+        if (const int cue = state_.sides[side].cue; cue >= 0) told.cueName = sideList.cues[static_cast<std::size_t>(cue)].name;
+        const auto next = replica_.playback().followerAt(time, which);
+        if (next) told.nextName = sideList.cues[static_cast<std::size_t>(*next)].name;
+        told.untilNext = replica_.playback().untilFollowAt(time, which);
+    }
     status.controls = state_;
     if (hasNews()) status.said = std::exchange(news_, {});
     return status;

@@ -27,8 +27,8 @@ public:
         : show_(show), showClock_(showClock), length_(length), replica_(inputs), events_(events.reader()) {}
 
     // The status at `moment`. `nextGo`: run time of the schedule's next GO; Time::max() if there is
-    // none.
-    RunStatus at(Time moment, Time nextGo);
+    // none. `list`: that the keys for cues go to, as Input::list.
+    RunStatus at(Time moment, Time nextGo, int list = 0);
     // Whether there is news that at() has not reported yet.
     bool hasNews();
 

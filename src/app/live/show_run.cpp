@@ -335,7 +335,7 @@ private:
     }
 
     RunStatus statusAt(Time moment) {
-        RunStatus status = view_.at(moment, keys_.nextGo());
+        RunStatus status = view_.at(moment, keys_.nextGo(), keys_.list());
         status.settingUp = settingUp_.on();
         status.keys = attended_;
         status.schedule = outlook_.at(wall_.now().utc);

@@ -22,9 +22,9 @@ Result<std::unique_ptr<OpenSite>> OpenSite::open(const show::Site& site, Backend
 }
 
 bool OpenSite::pressGo(const show::Site& site) {
-    const auto go = std::ranges::find_if(site.buttons, [](const auto& button) { return button.second == show::Button::Go; });
+    const auto go = std::ranges::find(site.buttons, show::Button::Go, &show::SiteButton::button);  // the main list's comes first
     if (!simulation || !devices.cueController || go == site.buttons.end()) return false;
-    for (const bool pressed : {true, false}) world.press(go->first, pressed);
+    for (const bool pressed : {true, false}) world.press(go->number, pressed);
     return true;
 }
 

@@ -8,14 +8,16 @@
 
 namespace fantascope::render {
 
-Time positionAt(const VideoSource& source, Time time) {
+std::optional<Time> positionAt(const VideoSource& source, Time time) {
     // Neither a display's refreshes nor a file's time stamps are exact, so a frame that begins
     // within this time is shown.
     constexpr Time kTolerance = std::chrono::milliseconds(1);
-    const Time length = source.stream->content().length;
+    const Time end = source.stream->content().length;
+    const Time length = std::min(source.to.value_or(end), end) - source.from;
     const Time played(std::llround(static_cast<double>((time + kTolerance).count()) * source.speed));
-    if (source.loop) return (played % length + length) % length;
-    return std::clamp(played, Time{}, length - Time(1));
+    if (source.times > 0 && played < Time{}) return source.from;
+    if (source.times == 0 || played / length < source.times) return source.from + (played % length + length) % length;
+    return source.endsDark ? std::nullopt : std::optional(source.from + length - Time(1));
 }
 
 namespace {

@@ -67,14 +67,17 @@ struct ImageSource {
     std::shared_ptr<const RgbaImage> picture;  // stored sRGB values, straight alpha
 };
 
-// A video, whose stream is shared by the outputs that show it. After its end, its last frame stays.
+// A video, whose stream is shared by the outputs that show it.
 struct VideoSource {
     std::shared_ptr<VideoStream> stream;
-    bool loop = true;
-    double speed = 1;  // positive
+    Time from{};             // where it begins, in the video
+    std::optional<Time> to;  // where it ends, after `from`; none, or later than that: the video's end
+    int times = 0;           // so often it plays; 0: for ever
+    bool endsDark = false;   // after that nothing is seen, else its last frame
+    double speed = 1;        // positive
 };
-// The position in the video at layer time `time`.
-Time positionAt(const VideoSource& source, Time time);
+// The position in the video at layer time `time`; nothing: it is over, and dark.
+std::optional<Time> positionAt(const VideoSource& source, Time time);
 
 // Shadow theatre: a cast's moving people between lamps and a screen. The lamps' light adds up.
 // Source: Won & Lee 2016; section 7 for soft light and several lights.

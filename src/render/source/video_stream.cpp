@@ -19,19 +19,22 @@ constexpr Time kRest = std::chrono::milliseconds(10), kRetry = std::chrono::seco
 
 }  // namespace
 
-Result<std::shared_ptr<VideoStream>> VideoStream::open(const std::filesystem::path& file, Pace pace) {
+Result<std::shared_ptr<VideoStream>> VideoStream::open(const std::filesystem::path& file, Pace pace, Time from) {
     auto content = TRY(VideoDecoder::examine(file));
+    if (from >= content->length)
+        return Error(fmt::format("{}: it is {:.3f} s long, so it cannot begin at {:.3f} s", file.string(),
+                                 seconds(content->length), seconds(from)));
     auto decoder = TRY(VideoDecoder::open(content));
     const auto first = decoder->next();
     if (first.value_or(kOpening) >= kOpening)
         return Error(
             fmt::format("{}: its first frame cannot be decoded; copy the file again, or export it again", file.string()));
-    return std::shared_ptr<VideoStream>(new VideoStream(std::move(content), std::move(decoder), *first, pace));
+    return std::shared_ptr<VideoStream>(new VideoStream(std::move(content), std::move(decoder), *first, pace, from));
 }
 
 VideoStream::VideoStream(std::shared_ptr<const VideoContent> content, std::unique_ptr<VideoDecoder> decoder,
-                         std::uint32_t decoded, Pace pace)
-    : content_(std::move(content)), pace_(pace) {
+                         std::uint32_t decoded, Pace pace, Time from)
+    : content_(std::move(content)), pace_(pace), opening_(content_->frameAt(from)) {
     asked_.reserve(kMaxMoments);
     wanted_.reserve(kSlots);
     findWanted();
@@ -113,7 +116,7 @@ void VideoStream::findWanted() {
     };
     for (std::uint32_t ahead = 0; ahead < kAhead; ++ahead)
         for (const std::uint32_t asked : asked_) want((asked + ahead) % count);
-    for (std::uint32_t frame = 0; frame < kOpening; ++frame) want(frame % count);
+    for (std::uint32_t frame = 0; frame < kOpening; ++frame) want((opening_ + frame) % count);
 }
 
 bool VideoStream::wanted(std::uint32_t frame) const { return std::ranges::find(wanted_, frame) != wanted_.end(); }
@@ -202,7 +205,7 @@ void VideoStream::publish(std::uint32_t frame, VideoDecoder* decoder) {
 // The readers' thread.
 
 VideoStream::Reader::Reader(std::shared_ptr<VideoStream> stream)
-    : stream_(std::move(stream)), asked_(std::make_shared<Asked>(0)) {
+    : stream_(std::move(stream)), asked_(std::make_shared<Asked>(stream_->opening_)) {
     const std::lock_guard lock(stream_->mutex_);
     stream_->readers_.push_back(asked_);
 }

@@ -22,7 +22,7 @@ namespace fantascope::render {
 // output asks for a moment of the video. If outputs ask for different moments, as when the video
 // began earlier on one of them, each gets its own decoder.
 //
-// Frames are kept as RGBA, 4 bytes per pixel: kOpening of the beginning, kAhead for every moment
+// Frames are kept as RGBA, 4 bytes per pixel: kOpening from where it begins, kAhead for every moment
 // asked for, and kSpare; some 100 MB for one moment of 1920 x 1080. A video that begins, restarts
 // or loops shows its opening at once while further frames are decoded. If a frame cannot be
 // decoded, the one before it stays.
@@ -34,9 +34,9 @@ public:
         Exact  // wait for it, so that the same moments always show the same frames
     };
 
-    // Opens a video and decodes its first frame. Error: as VideoDecoder::examine(), or the first
-    // frame cannot be decoded.
-    static Result<std::shared_ptr<VideoStream>> open(const std::filesystem::path& file, Pace pace);
+    // Opens a video and decodes its first frame. `from`: where it begins to play. Error: as
+    // VideoDecoder::examine(), or the first frame cannot be decoded, or the video is over by then.
+    static Result<std::shared_ptr<VideoStream>> open(const std::filesystem::path& file, Pace pace, Time from = {});
     ~VideoStream();
 
     const VideoContent& content() const { return *content_; }
@@ -106,7 +106,7 @@ private:
     };
 
     VideoStream(std::shared_ptr<const VideoContent> content, std::unique_ptr<VideoDecoder> decoder, std::uint32_t decoded,
-                Pace pace);
+                Pace pace, Time from);
     void run();
     void findWanted();
     void fetch(std::uint32_t frame);
@@ -123,6 +123,7 @@ private:
 
     const std::shared_ptr<const VideoContent> content_;
     const Pace pace_;
+    const std::uint32_t opening_;  // the first frame of what plays
     std::array<Slot, kSlots> slots_;
     std::atomic<std::uint32_t> wishes_ = 0, published_ = 0;  // counters that threads wait on
     std::atomic<std::int64_t> lateFrames_ = 0, damagedFrames_ = 0;

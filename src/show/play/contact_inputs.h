@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace fantascope::show {
 
@@ -12,6 +14,8 @@ namespace fantascope::show {
 // the contact no such action. `bank` and `contact` count as in the site. `witnessed`: the change
 // was seen. A state found at the start or after a loss is not witnessed: it enters no cue and
 // toggles no blackout. Dark and Light apply nevertheless, because they are states.
-std::optional<Input> inputFor(const Site& site, std::size_t bank, std::size_t contact, bool closed, bool witnessed, Time at);
+// `sides`: the names of the show's side lists.
+std::optional<Input> inputFor(const Site& site, std::size_t bank, std::size_t contact, bool closed, bool witnessed, Time at,
+                              const std::vector<std::string>& sides = {});
 
 }  // namespace fantascope::show

@@ -1,5 +1,7 @@
 #include "show/play/cue_buttons.h"
 
+#include "show/names.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -15,10 +17,10 @@ constexpr std::pair<Button, Input::Kind> kInputButtons[] = {
 
 }  // namespace
 
-CueButtons::CueButtons(const std::vector<std::pair<int, Button>>& buttons) {
-    for (const auto& [number, button] : buttons)
+CueButtons::CueButtons(const std::vector<SiteButton>& buttons, const std::vector<std::string>& sides) {
+    for (const auto& [number, button, list] : buttons)
         for (const auto& [known, kind] : kInputButtons)
-            if (known == button) keys_.push_back({number, kind});
+            if (known == button) keys_.push_back({number, kind, listNamed(list, sides)});
 }
 
 std::optional<Input> CueButtons::inputFor(int button, bool pressed, Time at) {
@@ -26,7 +28,7 @@ std::optional<Input> CueButtons::inputFor(int button, bool pressed, Time at) {
     if (key == keys_.end()) return std::nullopt;
     const bool wasDown = std::exchange(key->down, pressed);
     if (!pressed || wasDown) return std::nullopt;
-    return Input{.at = at, .kind = key->kind, .source = Input::Source::Controller, .which = button};
+    return Input{.at = at, .kind = key->kind, .source = Input::Source::Controller, .which = button, .list = key->list};
 }
 
 }  // namespace fantascope::show

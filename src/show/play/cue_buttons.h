@@ -6,6 +6,7 @@
 #include "core/clock.h"
 
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,8 +16,8 @@ namespace fantascope::show {
 // held button gives no further input. Thread: bound to one thread at a time.
 class CueButtons {
 public:
-    // `buttons`: as in Site::buttons.
-    explicit CueButtons(const std::vector<std::pair<int, Button>>& buttons);
+    // `buttons`: as in Site::buttons. `sides`: the names of the show's side lists.
+    explicit CueButtons(const std::vector<SiteButton>& buttons, const std::vector<std::string>& sides = {});
 
     // Call this when `button` went down or up at show time `at`. Returns the input that this asks
     // for. A release gives none, nor does a button for setting up.
@@ -26,6 +27,7 @@ private:
     struct Key {
         int number = 0;
         Input::Kind kind = Input::Kind::Go;
+        int list = 0;
         bool down = false;
     };
     std::vector<Key> keys_;

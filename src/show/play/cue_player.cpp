@@ -39,14 +39,35 @@ std::optional<Position> followerOf(const CueList& list, const Position& now) {
 // The dark before the first cue, as a cue.
 CueList::Cue darkOf(const CueList& list) { return {.look = list.dark, .fade = list.darkFade, .follow = {}}; }
 
-// What has followed a cue by `at`. A cue that is entered at `at` begins as any other.
-Position followed(const CueList& list, Position position, Time at) {
-    while (position.entered < at) {
-        const auto next = followerOf(list, position);
+// A cue, and what has followed it by `at`. A cue that is entered at `at` begins as any other.
+std::vector<Position> wayOf(const CueList& list, const Position& first, Time at) {
+    std::vector<Position> way{first};
+    while (way.back().entered < at) {
+        const auto next = followerOf(list, way.back());
         if (!next || next->entered > at) break;
-        position = *next;
+        way.push_back(*next);
     }
-    return position;
+    return way;
+}
+
+// What a list brings on its way from cue `before` over others.
+std::vector<CuePlayer::Brought> broughtOn(std::span<const Position> way, int before, const CueList& list) {
+    std::vector<std::optional<CuePlayer::Brought>> newest(list.sides.size());
+    for (const auto& [cue, entered, follows, turns] : way) {
+        for (std::size_t side = 0; side < newest.size(); ++side)
+            if (cue < 0)
+                newest[side] = {side, -1, entered};
+            else if (const auto start = list.sides[side]->start; before < 0 && start)
+                newest[side] = {side, *start, entered};
+        if (cue >= 0)
+            for (const auto& with : list.cues[static_cast<std::size_t>(cue)].with)
+                newest[with.list] = {with.list, with.cue, entered};
+        before = cue;
+    }
+    std::vector<CuePlayer::Brought> brought;
+    for (const auto& one : newest)
+        if (one) brought.push_back(*one);
+    return brought;
 }
 
 }  // namespace
@@ -85,23 +106,24 @@ LookCourses::Room CuePlayer::room() const { return {sources_.size() + composed_.
 
 void CuePlayer::enter(int cue, Time at, Time ago) {
     std::shared_ptr<const CueList> list = this->at(at).list;
-    const Position position = followed(*list, {cue, at - ago}, at);
-    begin(std::move(list), position, at);
+    const std::vector<Position> way = wayOf(*list, {cue, at - ago}, at);
+    begin(std::move(list), way, at);
     followOn();
 }
 
-// Adds the entries of a cue that was entered before and is seen from `at` on. Later entries are
-// dropped.
-void CuePlayer::begin(std::shared_ptr<const CueList> list, const Position& position, Time at) {
-    const auto& [cue, entered, follows, turns] = position;
+// Adds the entries of the last cue of a way, which was entered at `at` or before and is seen from
+// `at` on. Later entries are dropped.
+void CuePlayer::begin(std::shared_ptr<const CueList> list, std::span<const Position> way, Time at) {
+    const auto& [cue, entered, follows, turns] = way.back();
     const bool hasBegun = entered < at;
     const CueList::Cue dark = cue < 0 ? darkOf(*list) : CueList::Cue();
     const CueList::Cue& wanted = cue < 0 ? dark : list->cues[static_cast<std::size_t>(cue)];
     const Time least = hasBegun ? list->blackoutFade : Time{};
     drop(at);
-    Entry entry{.at = at, .list = list, .cue = cue, .entered = entered, .next = {}, .seen = entries_.back().seen};
+    Entry entry{.at = at, .list = list, .cue = cue, .entered = entered, .next = {}, .number = ++begun_, .seen = entries_.back().seen};
     entry.whole = std::max(entered + wanted.length(), at + least);
-    entry.next = followerOf(*list, position);
+    entry.next = followerOf(*list, way.back());
+    entry.brings = broughtOn(way, entries_.back().cue, *list);
     move(std::move(entry), wanted, least, hasBegun);
 }
 
@@ -112,10 +134,12 @@ void CuePlayer::move(Entry entry, const CueList::Cue& wanted, Time least, bool h
     entries_.push_back(std::move(entry));
     for (Movement& movement : wanted.movements(entries_.back().entered, entries_.back().at, least)) {
         Entry& last = entries_.back();
+        if (last.cue < 0) std::ranges::replace(movement.relays, Movement::Relay::Switches, Movement::Relay::Releases);
         movement.begun = hasBegun ? std::min(movement.start, last.entered + wanted.wait) : movement.start;
         if (movement.start > last.at) {
             Entry later = last;
             later.at = movement.start;
+            later.brings.clear();
             entries_.push_back(std::move(later));
         }
         entries_.back().seen = entries_.back().seen.moved(movement, wanted.look, wanted.winds);
@@ -134,7 +158,7 @@ void CuePlayer::followOn() {
         const Entry& last = entries_.back();
         if (!last.next) return;
         const Position next = *last.next;
-        begin(last.list, next, next.entered);
+        begin(last.list, {&next, 1}, next.entered);
     }
 }
 
@@ -150,6 +174,11 @@ void CuePlayer::foresee(Time time, Time kept) {
     forget();
 }
 
+void CuePlayer::rewind(Time time) {
+    drop(time);
+    followOn();
+}
+
 void CuePlayer::revise(std::shared_ptr<const CueList> list, Time at) {
     const Entry& now = this->at(at);
     FANTASCOPE_CHECK(isOfOneSite(list->dark, now.list->dark), "all lists are for one site");
@@ -157,6 +186,7 @@ void CuePlayer::revise(std::shared_ptr<const CueList> list, Time at) {
     const auto [cue, isThere] = foundAgain(now.cue, *now.list, *list);
     Entry entry{.at = at, .list = list, .cue = cue, .entered = now.entered, .whole = now.whole, .next = {}, .seen = now.seen};
     entry.isGone = !isThere || now.isGone;
+    entry.number = ++begun_;
     drop(at);
     if (entry.isGone) {
         entries_.push_back(std::move(entry));

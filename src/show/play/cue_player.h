@@ -6,10 +6,12 @@
 
 #include "core/clock.h"
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <vector>
 
 namespace fantascope::show {
@@ -32,6 +34,8 @@ namespace fantascope::show {
 //   when the cue was entered. If the cue is gone, what is seen stays until another one is entered,
 //   and the nearest previous one that is still there counts as the current one. The past does not
 //   change.
+// - A cue brings cues of the side lists with it: those that it names, and the starts of all sides if
+//   the list comes out of the dark. Into the dark it brings them all.
 //
 // Thread: const functions are reentrant.
 class CuePlayer {
@@ -47,6 +51,12 @@ public:
         int follows = 0;
         Turns turns{};
     };
+    // A cue of a side list that the list brings with it.
+    struct Brought {
+        std::size_t side = 0;  // index into CueList::sides
+        int cue = -1;          // -1: the dark before the first
+        Time entered{};        // `at` of the entry, or earlier if the list joins late
+    };
     // What is seen from a moment on, because of a cue that was entered, or that will follow by
     // itself if no other is entered first. A cue that moves things at different moments has an
     // entry for each.
@@ -58,6 +68,8 @@ public:
         Time whole = Time::min();      // when the cue's look is whole
         std::optional<Position> next;  // that follows by itself
         bool isGone = false;           // `list` has lost the cue that is seen; `cue` is the nearest one before it
+        std::uint64_t number = 0;       // goes up from entry to entry; the entries of one cue share it
+        std::vector<Brought> brings{};  // that are entered now
         LookCourses seen;
     };
 
@@ -73,9 +85,22 @@ public:
     // Works out the follows until `time`. What was over before `kept` is forgotten, so that a loop
     // may go on for ever.
     void foresee(Time time, Time kept);
+    // Works the follows out anew, from those after `time`.
+    void rewind(Time time);
 
     // The list after the newest revision.
     const CueList& cues() const { return *entries_.back().list; }
+    // Calls take(at, brought) for what the entries until `until` bring whose numbers are above
+    // `taken`, by time. Returns the number of the last one.
+    std::uint64_t bring(std::uint64_t taken, Time until, auto take) const {
+        for (const Entry& entry : entries_) {
+            if (entry.at > until) break;
+            if (entry.number <= taken) continue;
+            taken = entry.number;
+            for (const Brought& brought : entry.brings) take(entry.at, brought);
+        }
+        return taken;
+    }
     // The entry of `time`; for a time that is forgotten, the oldest one.
     const Entry& at(Time time) const;
     // The rest of the current cue's fade, and of its wait; 0 once they are over, and before the
@@ -94,13 +119,14 @@ public:
 
 private:
     void examine(const CueList& list);
-    void begin(std::shared_ptr<const CueList> list, const Position& position, Time at);
+    void begin(std::shared_ptr<const CueList> list, std::span<const Position> way, Time at);
     void move(Entry entry, const CueList::Cue& wanted, Time least, bool hasBegun);
     void drop(Time at);
     void followOn();
 
     std::set<SourceId> sources_;  // of all looks: at most so many layers add their light on one output
     LookCourses::Room composed_;  // of all looks and outputs: an upper bound for one output in a chain of fades
+    std::uint64_t begun_ = 0;     // entries with a number so far
     std::vector<Entry> entries_;  // by time, future ones last; the first one is the dark before any cue
 };
 

@@ -18,13 +18,16 @@ std::string causeOf(const auto& cause) {
     return cause.output.empty() ? cause.cause : fmt::format("{}: {}", cause.output, cause.cause);
 }
 
+// "Lamps, " before news of a side list.
+std::string inList(const std::string& list) { return list.empty() ? "" : list + ", "; }
+
 struct Teller {
     std::string operator()(const event::InputDecided& decided) const {
         return decided.input.outcome == Outcome::Taken ? "" : std::string(nameOf(decided.input.outcome));
     }
     std::string operator()(const event::CueEntered& entered) const {
-        if (entered.cue < 0) return "no cue: it gets dark";
-        return fmt::format("cue {}: {}", placeOf(entered.number, entered.cue, entered.cues), entered.name);
+        if (entered.cue < 0) return inList(entered.list) + "no cue: it gets dark";
+        return fmt::format("{}cue {}: {}", inList(entered.list), placeOf(entered.number, entered.cue, entered.cues), entered.name);
     }
     std::string operator()(const event::HoldChanged& change) const {
         switch (change.hold) {
@@ -47,8 +50,11 @@ struct Teller {
         return fmt::format("master {:.0f} %", 100 * change.level);
     }
     std::string operator()(const event::CueLoaded& loaded) const {
-        if (loaded.cue < 0) return "GO enters the next cue";
-        return fmt::format("GO enters cue {}: {}", placeOf(loaded.number, loaded.cue, loaded.cues), loaded.name);
+        if (loaded.cue < 0) return inList(loaded.list) + "GO enters the next cue";
+        return fmt::format("{}GO enters cue {}: {}", inList(loaded.list), placeOf(loaded.number, loaded.cue, loaded.cues), loaded.name);
+    }
+    std::string operator()(const event::ListChosen& chosen) const {
+        return "GO, back and load are now for " + (chosen.list.empty() ? "the show's own cues" : "'" + chosen.list + "'");
     }
     std::string operator()(const event::ShowResumed& resumed) const {
         std::string text = "the show goes on where the journal ends";

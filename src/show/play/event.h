@@ -26,6 +26,7 @@ struct CueEntered {
     int cues = 0;
     std::string name;
     CueNumber number = 0;
+    std::string list{};  // the side list; empty: the main one
 };
 // The operator holds the show in some way, or lets it go.
 struct HoldChanged {
@@ -41,6 +42,11 @@ struct CueLoaded {
     int cues = 0;
     std::string name;
     CueNumber number = 0;
+    std::string list{};  // the side list; empty: the main one
+};
+// The keys for cues go to another list.
+struct ListChosen {
+    std::string list;  // the side list; empty: the main one
 };
 // The run goes on with what an earlier one has left in the journal.
 struct ShowResumed {
@@ -147,7 +153,7 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ShowResumed, ScheduleCalled,
+using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ListChosen, ShowResumed, ScheduleCalled,
                           NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, FaultBegan, FaultEnded, SendersChanged,
                           PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan,
                           CauseEnded, PatternFitted, LampsTrimmed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;

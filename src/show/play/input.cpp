@@ -21,6 +21,8 @@ constexpr std::array<std::string_view, 8> kSources = {"start",  "controller", "c
 static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Master) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Journal) + 1);
 
+constexpr std::string_view kList = "list", kLate = "late";
+
 bool hasRevision(Input::Kind kind) { return kind == Input::Kind::Revise || kind == Input::Kind::Exchange; }
 
 std::vector<std::string_view> wordsOf(std::string_view line) {
@@ -88,6 +90,10 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: it was pressed while the machine was busy; press it again";
         case Outcome::NoSuchLevel:
             return "ignored: a level is 0 to 1";
+        case Outcome::NoSuchList:
+            return "ignored: there is no such cue list";
+        case Outcome::OtherLists:
+            return "ignored: it has other cue lists; end the show and begin it anew";
     }
     return "unknown";
 }
@@ -103,16 +109,20 @@ std::string lineOf(const Input& input) {
     if (input.kind == Input::Kind::Jump && input.ago != Time{}) line += fmt::format(" {}", input.ago.count());
     if (input.kind == Input::Kind::Master) line += fmt::format(" {}", input.level);
     if (input.kind == Input::Kind::Trim) line += fmt::format(" {} {}", input.trim.share, input.trim.relaysOff);
-    if (input.late) line += " late";
+    if (input.list != 0) line += fmt::format(" {} {}", kList, input.list);
+    if (input.late) line += fmt::format(" {}", kLate);
     return line;
 }
 
 Result<Input> inputOf(std::string_view line) {
     std::vector<std::string_view> words = wordsOf(line);
-    const bool late = words.back() == "late";
-    if (late) words.pop_back();
     constexpr std::size_t kWords = 5;
-    Input input{.late = late};
+    Input input{.late = words.back() == kLate};
+    if (input.late) words.pop_back();
+    if (words.size() > kWords && words[words.size() - 2] == kList) {
+        input.list = TRY(numberOf<int>(words.back()));
+        words.resize(words.size() - 2);
+    }
     const std::string_view kind = words.size() > 1 ? words[1] : "";
     const std::size_t wanted = kWords + (kind == "correct"  ? 2 * input.shift.size()
                                          : kind == "trim"   ? 2

@@ -56,6 +56,7 @@ struct Input {
     LampTrim trim{};       // only for Trim
     float level = 1;       // only for Master, 0..1
     Time ago{};            // for Jump: the cue was to be entered so long before; what has followed by now is entered
+    int list = 0;          // for Go, Back, Jump and Load: the list; 0: the main one, else that of CueList::sides, from 1
     bool late = false;     // a person asked for it so long before it was taken that it may not be wanted any more
     friend bool operator==(const Input&, const Input&) = default;
 };
@@ -78,7 +79,9 @@ enum class Outcome {
     Panicked,
     NothingToRestore,
     TooLate,
-    NoSuchLevel
+    NoSuchLevel,
+    NoSuchList,
+    OtherLists
 };
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
@@ -88,7 +91,8 @@ std::string_view nameOf(Input::Source source);
 
 // One line, without its end: show time in nanoseconds, kind, cue (of Revise and Exchange: the
 // revision), source, which, of Correct also the shift, of Trim also the share and how many relays
-// are off, of Master also the level; and "late" if it is: "12500000000 jump 3 terminal 0".
+// are off, of Master also the level; "list" and its number unless it is the main one; and "late" if
+// it is: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads a line that lineOf() wrote. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

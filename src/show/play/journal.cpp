@@ -68,8 +68,10 @@ struct Writer {
         for (std::size_t i = 0; i < kHoldLetters.size(); ++i)
             if (state.controls.*kHolds[i].on) flags += kHoldLetters[i];
         if (state.corrects) flags += kCorrects;
+        if (flags.empty()) flags = '-';
+        for (const ListPlace& side : state.controls.sides) flags += fmt::format(":{},{}", side.cue, side.loaded);
         return fmt::format("state {} {} {} {} {} {}", state.at.count(), state.controls.cue, state.controls.loaded,
-                           state.controls.master, flags.empty() ? "-" : flags, printable(state.cue, 1000));
+                           state.controls.master, flags, printable(state.cue, 1000));
     }
     std::string operator()(const journal::Told& told) const {
         return fmt::format("event {} {}", told.at.count(), printable(told.text, 1000));
@@ -87,6 +89,17 @@ struct Writer {
         return fmt::format("end {} {}", end.at.count(), printable(end.why, 1000));
     }
 };
+
+// Where a side list is: "3,-1". Nothing: it is no place.
+std::optional<ListPlace> placeFrom(std::string_view text) {
+    std::string words(text);
+    std::ranges::replace(words, ',', ' ');
+    Words numbers(words);
+    ListPlace place;
+    place.cue = numbers.number<int>();
+    place.loaded = numbers.number<int>();
+    return numbers.isGood() && numbers.rest().empty() ? std::optional(place) : std::nullopt;
+}
 
 // Nothing: it is no line of a journal.
 std::optional<journal::Line> lineFrom(std::string_view text) {
@@ -110,7 +123,13 @@ std::optional<journal::Line> lineFrom(std::string_view text) {
         state.controls.cue = words.number<int>();
         state.controls.loaded = words.number<int>();
         state.controls.master = words.number<float>();
-        const std::string_view flags = words.word();
+        std::string_view flags = words.word();
+        while (const std::size_t colon = flags.rfind(':') + 1) {
+            const auto place = placeFrom(flags.substr(colon));
+            if (!place) return std::nullopt;
+            state.controls.sides.insert(state.controls.sides.begin(), *place);
+            flags.remove_suffix(flags.size() - colon + 1);
+        }
         const auto isOn = [&](char letter) { return flags.find(letter) != std::string_view::npos; };
         for (std::size_t i = 0; i < kHoldLetters.size(); ++i) state.controls.*kHolds[i].on = isOn(kHoldLetters[i]);
         state.corrects = isOn(kCorrects);
@@ -213,7 +232,9 @@ std::uint64_t hashOf(const CueList& list) {
     for (const CueList::Cue& cue : list.cues) {
         text += fmt::format("\n{} {}", cue.follow ? cue.follow->count() : -1, cue.name);
         if (!cue.followers.empty()) text += fmt::format(" {} {} {}", fmt::join(cue.followers, ","), cue.times, list.seed);
+        for (const CueList::Cue::SideCue& with : cue.with) text += fmt::format(" with {} {}", with.list, with.cue);
     }
+    for (const auto& side : list.sides) text += fmt::format("\nlist {} {} {}", side->name, side->start.value_or(-1), hashOf(*side));
     return fnv1a(text);
 }
 

@@ -35,7 +35,7 @@ struct Run {
 // lost.
 struct State {
     Time at{};
-    Controls controls;     // without `next`
+    Controls controls;     // without any `next`
     bool corrects = true;  // corrections are allowed
     std::string cue;       // the name of the current one; empty: none
     friend bool operator==(const State&, const State&) = default;

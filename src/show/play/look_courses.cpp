@@ -50,12 +50,13 @@ const Fade* fadeOf(std::size_t output, SourceId source, const Movement& movement
 
 }  // namespace
 
-LookCourses::LookCourses(const Look& look) : relays_(look.relays) {
+LookCourses::LookCourses(const Look& look) {
     Movement at;
     at.outputs.assign(look.outputs.size(), Fade());
     for (std::size_t output = 0; output < look.outputs.size(); ++output)
         outputs_.push_back(moved({}, look.outputs[output], look.outputs[output], at, output));
     for (const float level : look.levels) levels_.push_back(Course::at(level));
+    for (const std::uint8_t relay : look.relays) relays_.push_back({.on = relay});
 }
 
 LookCourses LookCourses::moved(const Movement& movement, const Look& look, std::span<const WindWish> winds) const {
@@ -71,8 +72,11 @@ LookCourses LookCourses::moved(const Movement& movement, const Look& look, std::
     for (std::size_t i = 0; i < levels_.size(); ++i)
         if (const auto& fade = movement.levels[i])
             after.levels_[i] = courseOf(from.levels[i], look.levels[i], movement.start, *fade);
-    for (std::size_t i = 0; i < relays_.size(); ++i)
-        if (movement.relays[i]) after.relays_[i] = look.relays[i];
+    for (std::size_t i = 0; i < relays_.size(); ++i) {
+        if (movement.relays[i] != Movement::Relay::Stays) after.relays_[i].on = look.relays[i];
+        if (movement.relays[i] == Movement::Relay::Switches) after.relays_[i].since = movement.start;
+        if (movement.relays[i] == Movement::Relay::Releases) after.relays_[i].since = Time::min();
+    }
     return after;
 }
 
@@ -119,32 +123,57 @@ LookCourses::OutputCourse LookCourses::moved(const OutputCourse& before, const O
 }
 
 void LookCourses::lookAt(Time time, const Room& room, Look& out) const {
-    out.outputs.resize(outputs_.size());
-    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const LookCourses* const self = this;
+    lookAt({&self, 1}, time, room, out);
+}
+
+void LookCourses::lookAt(std::span<const LookCourses* const> lists, Time time, const Room& room, Look& out) {
+    out.outputs.resize(lists.front()->outputs_.size());
+    for (std::size_t i = 0; i < out.outputs.size(); ++i) {
         OutputState& output = out.outputs[i];
         output.layers.reserve(room.layers);
         output.pictures.reserve(room.pictures);
         output.layers.clear();
         output.pictures.clear();
-        for (const LayerCourse& layer : outputs_[i].layers)
-            if (const float opacity = layer.opacity.valueAt(time); opacity > 0)
-                output.layers.push_back({layer.source, opacity, Blend::Add, layer.begun});
-        for (const PictureCourse& picture : outputs_[i].pictures) {
-            const float share = picture.share.valueAt(time);
-            if (share <= 0) continue;
-            const auto first = static_cast<std::uint32_t>(output.layers.size());
-            output.layers.insert(output.layers.end(), picture.layers.begin(), picture.layers.end());
-            output.pictures.push_back({first, static_cast<std::uint32_t>(output.layers.size()), share});
-        }
+        for (const LookCourses* const list : lists) list->addLayers(i, time, output);
+        for (const LookCourses* const list : lists) list->addPictures(i, time, output);
     }
-    out.levels.resize(levels_.size());
-    std::ranges::transform(levels_, out.levels.begin(), [&](const Course& level) { return level.valueAt(time); });
-    out.relays = relays_;
+    const LookCourses& first = *lists.front();
+    out.levels.resize(first.levels_.size());
+    std::ranges::transform(first.levels_, out.levels.begin(), [&](const Course& level) { return level.valueAt(time); });
+    out.relays.resize(first.relays_.size());
+    for (std::size_t i = 0; i < out.levels.size(); ++i)
+        for (const LookCourses* const side : lists.subspan(1))
+            out.levels[i] = std::max(out.levels[i], side->levels_[i].valueAt(time));
+    for (std::size_t i = 0; i < out.relays.size(); ++i) {
+        const LookCourses* const last =
+            *std::ranges::max_element(lists, {}, [i](const LookCourses* list) { return list->relays_[i].since; });
+        out.relays[i] = last->relays_[i].on;
+    }
 }
 
-void LookCourses::windsAt(Time time, double lull, std::vector<Wind>& out) const {
-    out.resize(outputs_.size());
-    std::ranges::transform(outputs_, out.begin(), [&](const OutputCourse& output) { return output.wind.at(time, lull); });
+void LookCourses::addLayers(std::size_t output, Time time, OutputState& out) const {
+    const std::size_t ofOthers = out.layers.size();
+    for (const LayerCourse& layer : outputs_[output].layers) {
+        const float opacity = layer.opacity.valueAt(time);
+        if (opacity <= 0) continue;
+        const auto end = out.layers.begin() + static_cast<std::ptrdiff_t>(ofOthers);
+        const auto same = std::find_if(out.layers.begin(), end, [&](const LayerState& other) { return other.source == layer.source; });
+        if (same == end)
+            out.layers.push_back({layer.source, opacity, Blend::Add, layer.begun});
+        else
+            same->opacity = std::max(same->opacity, opacity);
+    }
+}
+
+void LookCourses::addPictures(std::size_t output, Time time, OutputState& out) const {
+    for (const PictureCourse& picture : outputs_[output].pictures) {
+        const float share = picture.share.valueAt(time);
+        if (share <= 0) continue;
+        const auto first = static_cast<std::uint32_t>(out.layers.size());
+        out.layers.insert(out.layers.end(), picture.layers.begin(), picture.layers.end());
+        out.pictures.push_back({first, static_cast<std::uint32_t>(out.layers.size()), share});
+    }
 }
 
 }  // namespace fantascope::show

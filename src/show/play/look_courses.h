@@ -16,7 +16,7 @@
 namespace fantascope::show {
 
 // How everything that is seen moves: the courses of each layer, picture, channel and wind, and the
-// state of each relay. A layer that only adds its light has a course of its own. Layers of a
+// state of each relay, as one list moves them. A layer that only adds its light has a course of its own. Layers of a
 // picture that is composed in order come and go as a whole. Value type; thread: reentrant.
 class LookCourses {
 public:
@@ -35,8 +35,12 @@ public:
     };
     // What is seen at `time`, not before the start of the last movement.
     void lookAt(Time time, const Room& room, Look& out) const;
-    // The winds at `time`, one for each output; `lull` is Gusts::lullAt(time).
-    void windsAt(Time time, double lull, std::vector<Wind>& out) const;
+    // What is seen where several lists play at once, `room` being that of all. The highest level
+    // and the highest opacity of a source count; a source plays as the first list with it says.
+    // Composed pictures add their light. A relay is as the list has it that switched it last.
+    static void lookAt(std::span<const LookCourses* const> lists, Time time, const Room& room, Look& out);
+    // The wind of an output at `time`; `lull` is Gusts::lullAt(time).
+    Wind windAt(std::size_t output, Time time, double lull) const { return outputs_[output].wind.at(time, lull); }
 
 private:
     struct LayerCourse {
@@ -56,9 +60,16 @@ private:
     static OutputCourse moved(const OutputCourse& before, const OutputState& from, const OutputState& to,
                               const Movement& movement, std::size_t output);
 
+    void addLayers(std::size_t output, Time time, OutputState& out) const;
+    void addPictures(std::size_t output, Time time, OutputState& out) const;
+
     std::vector<OutputCourse> outputs_;
     std::vector<Course> levels_;
-    std::vector<std::uint8_t> relays_;
+    struct RelayState {
+        std::uint8_t on = 0;
+        Time since = Time::min();  // when a cue last said so; min(): none has
+    };
+    std::vector<RelayState> relays_;
 };
 
 }  // namespace fantascope::show

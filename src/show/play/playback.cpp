@@ -1,7 +1,11 @@
 #include "show/play/playback.h"
 
+#include "core/check.h"
+
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace fantascope::show {
@@ -26,7 +30,11 @@ void dim(Look& look, float light) {
 
 }  // namespace
 
-Playback::Playback(std::shared_ptr<const CueList> list) : gusts_(list->seed), player_(std::move(list)) {}
+Playback::Playback(std::shared_ptr<const CueList> list) : gusts_(list->seed) {
+    FANTASCOPE_CHECK(list->sides.size() <= kMostSides, "a show has only so many lists");
+    lists_.push_back({CuePlayer(list)});
+    for (const auto& side : list->sides) lists_.push_back({CuePlayer(side)});
+}
 
 Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revision) {
     newest_ = std::max(newest_, input.at);
@@ -40,7 +48,7 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
 }
 
 Outcome Playback::take(const Input& input, Time at, std::shared_ptr<const CueList> revision) {
-    const CueList& list = *player_.at(cueTime_.at(at)).list;
+    const CueList& list = *main().at(cueTime_.at(at)).list;
     switch (input.kind) {
         case Input::Kind::Go:
         case Input::Kind::Back:
@@ -89,12 +97,14 @@ Outcome Playback::take(const Input& input, Time at, std::shared_ptr<const CueLis
 
 // Enters a cue, or says which one GO is to enter.
 Outcome Playback::moveOn(const Input& input, Time at) {
-    const CuePlayer::Entry& now = player_.at(cueTime_.at(at));
+    if (input.list < 0 || static_cast<std::size_t>(input.list) >= lists_.size()) return Outcome::NoSuchList;
+    Played& played = lists_[static_cast<std::size_t>(input.list)];
+    const CuePlayer::Entry& now = played.player.at(cueTime_.at(at));
     const CueList& list = *now.list;
     const auto has = [&](int cue) { return cue >= 0 && cue < static_cast<int>(list.cues.size()); };
     if (input.kind == Input::Kind::Load) {
         if (input.cue != kNoCue && !has(input.cue)) return Outcome::NoSuchCue;
-        loaded_.set(at, input.cue);
+        played.loaded.set(at, input.cue);
         return Outcome::Taken;
     }
     if (isPanicAt(at)) return Outcome::Panicked;
@@ -106,7 +116,7 @@ Outcome Playback::moveOn(const Input& input, Time at) {
         }
         const bool isTooSoon = now.cue >= 0 && cueTime_.at(at) - now.entered < list.goInterval;
         if (isTooSoon || (wentOn_ && at - *wentOn_ < list.goInterval)) return Outcome::TooSoonAfterCue;
-        wanted = nextAt(at);
+        wanted = placeAt(at, played).next;
         if (!wanted) return Outcome::AtLastCue;
     } else if (input.kind == Input::Kind::Back) {
         if (now.cue <= 0) return Outcome::AtFirstCue;
@@ -116,9 +126,11 @@ Outcome Playback::moveOn(const Input& input, Time at) {
         wanted = input.cue;
     }
     if (paused_.last()) letGoOn(at);
-    if (wanted == kNoCue) frozen_.set(at, nullptr);  // a freeze must not keep the light on
-    loaded_.set(at, kNoCue);
-    player_.enter(*wanted, cueTime_.at(at), input.kind == Input::Kind::Jump ? input.ago : Time{});
+    if (wanted == kNoCue && input.list == 0) frozen_.set(at, nullptr);  // a freeze must not keep the light on
+    played.loaded.set(at, kNoCue);
+    rewindSides(cueTime_.at(at));
+    played.player.enter(*wanted, cueTime_.at(at), input.kind == Input::Kind::Jump ? input.ago : Time{});
+    foreseeCues(cueTime_.at(at));
     return Outcome::Taken;
 }
 
@@ -130,7 +142,7 @@ void Playback::letGoOn(Time at) {
 
 // Holds time or light, or lets them go.
 Outcome Playback::hold(Input::Kind kind, Time at) {
-    const CuePlayer::Entry& now = player_.at(cueTime_.at(at));
+    const CuePlayer::Entry& now = main().at(cueTime_.at(at));
     if (kind == Input::Kind::Restore) {
         if (!isPanicAt(at)) return Outcome::NothingToRestore;
         panic_.want(1, at, now.list->blackoutFade);
@@ -142,7 +154,7 @@ Outcome Playback::hold(Input::Kind kind, Time at) {
     } else if (isPanicAt(at)) {
         return Outcome::Panicked;
     } else if (kind == Input::Kind::Freeze) {
-        frozen_.set(at, frozen_.last() ? nullptr : std::make_shared<const Frozen>(now.seen, cueTime_.at(at)));
+        freeze(at);
     } else if (paused_.last()) {
         letGoOn(at);
     } else {
@@ -150,6 +162,14 @@ Outcome Playback::hold(Input::Kind kind, Time at) {
         cueTime_.stand(at);
     }
     return Outcome::Taken;
+}
+
+// Keeps what is seen, or shows the cues again.
+void Playback::freeze(Time at) {
+    if (frozen_.last()) return frozen_.set(at, nullptr);
+    Frozen frozen{.seen = {}, .cueTime = cueTime_.at(at)};
+    for (const Played& list : lists_) frozen.seen.push_back(list.player.at(frozen.cueTime).seen);
+    frozen_.set(at, std::make_shared<const Frozen>(std::move(frozen)));
 }
 
 Outcome Playback::correct(const Input& input, const CueList& list, Time at) {
@@ -163,7 +183,8 @@ Outcome Playback::correct(const Input& input, const CueList& list, Time at) {
 Outcome Playback::exchange(const Input& input, const CueList& list, Time at) {
     const SourceId source{static_cast<std::uint32_t>(input.which)};
     if (!corrects_.last()) return Outcome::CorrectionsOff;
-    if (!player_.shows(source) || !patterns_.exchange(source, input.revision, at, list.exchangeFade))
+    const auto shows = [&](const Played& list) { return list.player.shows(source); };
+    if (std::ranges::none_of(lists_, shows) || !patterns_.exchange(source, input.revision, at, list.exchangeFade))
         return Outcome::NoSuchPattern;
     return Outcome::Taken;
 }
@@ -183,12 +204,12 @@ Outcome Playback::trim(const LampTrim& trim, const CueList& list, Time at) {
 
 void Playback::foresee(Time time) {
     const Time kept = time - kKept;
-    player_.foresee(cueTime_.at(time), cueTime_.at(kept));
+    foreseeCues(cueTime_.at(time));
+    for (Played& list : lists_) list.loaded.forget(kept);
     cueTime_.forget(kept);
     for (Dimmer* const dimmer : {&blackout_, &panic_, &master_}) dimmer->forget(kept);
     for (Steps<bool>* const steps : {&corrects_, &locked_, &paused_}) steps->forget(kept);
     frozen_.forget(kept);
-    loaded_.forget(kept);
     taken_.forget(kept);
     shifts_.forget(kept);
     trims_.forget(kept);
@@ -196,36 +217,87 @@ void Playback::foresee(Time time) {
 
 Outcome Playback::revise(std::shared_ptr<const CueList> list, Time at) {
     if (list == nullptr) return Outcome::NoSuchRevision;
-    const CueList& old = *player_.at(cueTime_.at(at)).list;
+    const CueList& old = *main().at(cueTime_.at(at)).list;
     if (!isOfOneSite(list->dark, old.dark)) return Outcome::OtherSite;
-    if (const int loaded = loaded_.last(); loaded != kNoCue) {
-        const FoundCue found = foundAgain(loaded, old, *list);
-        loaded_.set(at, found.isThere ? found.cue : kNoCue);
-    }
+    const auto sameName = [](const auto& a, const auto& b) { return a->name == b->name; };
+    if (!std::ranges::equal(list->sides, old.sides, sameName)) return Outcome::OtherLists;
     cueTime_.tick(at);
-    player_.revise(std::move(list), cueTime_.at(at));
+    const Time cueTime = cueTime_.at(at);
+    rewindSides(cueTime);
+    for (std::size_t i = 0; i < lists_.size(); ++i) {
+        auto& [player, loads] = lists_[i];
+        const std::shared_ptr<const CueList>& revised = i == 0 ? list : list->sides[i - 1];
+        if (const int loaded = loads.last(); loaded != kNoCue) {
+            const FoundCue found = foundAgain(loaded, *player.at(cueTime).list, *revised);
+            loads.set(at, found.isThere ? found.cue : kNoCue);
+        }
+        player.revise(revised, cueTime);
+    }
     return Outcome::Taken;
 }
 
-std::optional<int> Playback::nextAt(Time time) const {
-    if (const int loaded = loaded_.at(time); loaded != kNoCue) return loaded;
-    const CuePlayer::Entry& now = player_.at(cueTime_.at(time));
-    return now.list->after(now.cue);
+// Works out the follows of all lists, and what the main list brings of the others, until a cue time.
+// In steps, since a list forgets.
+void Playback::foreseeCues(Time time) {
+    const bool hasSides = lists_.size() > 1;
+    for (bool isDone = false; !isDone;) {
+        const Time step = hasSides ? std::min(time, sidesKnown_ + kKept / 2) : time;
+        isDone = step >= time;
+        lists_.front().player.foresee(step, step - kKept);
+        if (!hasSides) continue;
+        brought_ = main().bring(brought_, step, [&](Time at, const CuePlayer::Brought& brought) { bring(at, brought); });
+        for (Played& side : std::span(lists_).subspan(1)) side.player.foresee(step, step - kKept);
+        sidesKnown_ = std::max(sidesKnown_, step);
+    }
+}
+
+// Enters a cue of a side list together with one of the main list, at a cue time.
+void Playback::bring(Time at, const CuePlayer::Brought& brought) {
+    CuePlayer& player = lists_[brought.side + 1].player;
+    player.foresee(at, at - kKept);
+    player.enter(brought.cue, at, at - brought.entered);
+}
+
+// Takes back what the main list was to bring after a cue time.
+void Playback::rewindSides(Time time) {
+    if (time >= sidesKnown_) return;
+    for (Played& side : std::span(lists_).subspan(1)) side.player.rewind(time);
+    sidesKnown_ = time;
+    brought_ = main().at(time).number;
+}
+
+ListPlace Playback::placeAt(Time time, const Played& list) const {
+    const CuePlayer::Entry& now = list.player.at(cueTime_.at(time));
+    const int loaded = list.loaded.at(time);
+    return {now.cue, loaded, loaded != kNoCue ? std::optional(loaded) : now.list->after(now.cue)};
 }
 
 void Playback::stateAt(Time time, ShowState& out) const {
     const Time cueTime = cueTime_.at(time);
-    const CuePlayer::Entry& entry = player_.at(cueTime);
+    const CuePlayer::Entry& entry = main().at(cueTime);
     const Frozen* const frozen = frozen_.at(time).get();
+    const double lull = gusts_.lullAt(frozen != nullptr ? frozen->cueTime : cueTime);
     out.time = time;
-    out.cue = entry.cue;
-    out.loaded = loaded_.at(time);
-    out.next = nextAt(time);
+    const ListPlace place = placeAt(time, lists_.front());
+    out.cue = place.cue;
+    out.loaded = place.loaded;
+    out.next = place.next;
+    out.sides.resize(lists_.size() - 1);
+    for (std::size_t side = 0; side < out.sides.size(); ++side) out.sides[side] = placeAt(time, lists_[side + 1]);
     out.cueTime = frozen != nullptr ? frozen->cueTime : cueTime;
     out.moves = frozen == nullptr && !cueTime_.standsAt(time);
-    const LookCourses& seen = frozen != nullptr ? frozen->seen : entry.seen;
-    seen.lookAt(out.cueTime, player_.room(), out);
-    seen.windsAt(out.cueTime, gusts_.lullAt(out.cueTime), out.winds);
+    std::array<const LookCourses*, 1 + kMostSides> seen{};
+    LookCourses::Room room;
+    for (std::size_t i = 0; i < lists_.size(); ++i) {
+        seen[i] = frozen != nullptr ? &frozen->seen[i] : &lists_[i].player.at(cueTime).seen;
+        room.layers += lists_[i].player.room().layers;
+        room.pictures += lists_[i].player.room().pictures;
+    }
+    LookCourses::lookAt(std::span(seen).first(lists_.size()), out.cueTime, room, out);
+    out.winds.resize(out.outputs.size());
+    const auto& owners = entry.list->windLists;
+    for (std::size_t output = 0; output < out.winds.size(); ++output)
+        out.winds[output] = seen[output < owners.size() ? owners[output] : 0]->windAt(output, out.cueTime, lull);
     out.shifts.resize(out.outputs.size());
     for (std::size_t output = 0; output < out.shifts.size(); ++output) out.shifts[output] = shifts_.at(output, time);
     out.lamps = trims_.at(time);

@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace fantascope::show {
 
@@ -49,6 +50,10 @@ namespace fantascope::show {
 //   panic and their ends, which may be needed, and harm nothing.
 // - A revision continues with another list (CuePlayer). A loaded cue stays loaded if the new list
 //   has it.
+// - The lists beside the main one play by the same cue time. GO, back, jumps and loads go to the list
+//   that the input names; each list has its own interval between them. A cue of the main list may
+//   enter cues of the others. The highest level and opacity count, and a relay is as the list has it
+//   that switched it last (LookCourses). Each output's wind is moved by one of the lists.
 // - A correction moves an output's picture to a shift at the list's `shiftSpeed`, an exchange brings
 //   another pattern of a source within the list's `exchangeFade`, and a trim moves the lamps' share
 //   at the list's `trim.speed`. None of them depends on cues or on cue time. A blackout or a panic
@@ -62,7 +67,7 @@ public:
     explicit Playback(CueList list) : Playback(std::make_shared<const CueList>(std::move(list))) {}
 
     // The cue list after the newest revision.
-    const CueList& cues() const { return player_.cues(); }
+    const CueList& cues() const { return main().cues(); }
 
     // Takes one input, or says why not. Inputs take effect in the order of the calls: an input
     // whose time is earlier than that of the previous one takes effect at the previous one's time.
@@ -71,26 +76,27 @@ public:
     Outcome apply(const Input& input, std::shared_ptr<const CueList> revision = nullptr);
 
     // Works out the follows until `time`. Every input works them out for one pass of the list, so
-    // only a list that loops needs this call. What was seen more than ten minutes before `time` is
-    // forgotten, so that a loop may go on for ever.
+    // only a list that loops, or has others beside it, needs this call. What was seen more than ten
+    // minutes before `time` is forgotten, so that a loop may go on for ever.
     void foresee(Time time);
 
     // The rest of the current cue's fade at `time`, in cue time; 0 once the fade is over, and
-    // before the first cue.
-    Time fadeLeftAt(Time time) const { return player_.fadeLeftAt(cueTime_.at(time)); }
-    bool fadesAt(Time time) const { return fadeLeftAt(time) > Time{}; }
+    // before the first cue. `list`: as Input::list.
+    Time fadeLeftAt(Time time, int list = 0) const { return playerOf(list).fadeLeftAt(cueTime_.at(time)); }
+    bool fadesAt(Time time, int list = 0) const { return fadeLeftAt(time, list) > Time{}; }
     // The rest of the current cue's wait at `time`, in cue time; 0 once it changes what is seen,
     // and before the first cue.
-    Time waitLeftAt(Time time) const { return player_.waitLeftAt(cueTime_.at(time)); }
+    Time waitLeftAt(Time time, int list = 0) const { return playerOf(list).waitLeftAt(cueTime_.at(time)); }
     // The cue time from `time` until the next cue follows by itself; nothing if the current cue
     // waits for an input.
-    std::optional<Time> untilFollowAt(Time time) const { return player_.untilFollowAt(cueTime_.at(time)); }
-
+    std::optional<Time> untilFollowAt(Time time, int list = 0) const {
+        return playerOf(list).untilFollowAt(cueTime_.at(time));
+    }
     // The cue that follows then.
-    std::optional<int> followerAt(Time time) const { return player_.followerAt(cueTime_.at(time)); }
+    std::optional<int> followerAt(Time time, int list = 0) const { return playerOf(list).followerAt(cueTime_.at(time)); }
 
-    // What is seen at `time`. Any time will do, but a list that loops must have been foreseen until
-    // then. For a time that is forgotten it gives what is oldest. The cost is a few binary searches
+    // What is seen at `time`. Any time will do, but a list that loops, or has others beside it, must
+    // have been foreseen until then. For a time that is forgotten it gives what is oldest. The cost is a few binary searches
     // and the evaluation of each course. The call allocates only when it fills `out` for the first
     // time.
     void stateAt(Time time, ShowState& out) const;
@@ -99,8 +105,13 @@ private:
     static constexpr int kNoCue = -1;
     // What is seen during a freeze.
     struct Frozen {
-        LookCourses seen;
+        std::vector<LookCourses> seen;  // of each list
         Time cueTime{};
+    };
+    // A list, and the cue that GO is to enter in it: of the list of its time.
+    struct Played {
+        CuePlayer player;  // in cue time
+        Steps<int> loaded{kNoCue};
     };
 
     Outcome take(const Input& input, Time at, std::shared_ptr<const CueList> revision);
@@ -111,17 +122,24 @@ private:
     Outcome trim(const LampTrim& trim, const CueList& list, Time at);
     Outcome revise(std::shared_ptr<const CueList> list, Time at);
     void letGoOn(Time at);
-    std::optional<int> nextAt(Time time) const;
+    const CuePlayer& main() const { return lists_.front().player; }
+    const CuePlayer& playerOf(int list) const { return lists_[static_cast<std::size_t>(list)].player; }
+    ListPlace placeAt(Time time, const Played& list) const;
+    void foreseeCues(Time time);
+    void bring(Time at, const CuePlayer::Brought& brought);
+    void rewindSides(Time time);
+    void freeze(Time at);
     bool isPanicAt(Time time) const { return panic_.wantedAt(time) < 1; }
     static bool isTooLate(const Input& input);
     bool isLockedOut(const Input& input, Time at) const;
 
     Gusts gusts_;       // of the first list's seed; a revision does not change them
-    CuePlayer player_;  // in cue time
+    std::vector<Played> lists_;  // the main one, then CueList::sides
+    Time sidesKnown_{};          // cue time until which the sides know what the main list brings
+    std::uint64_t brought_ = 0;  // the number of the main list's last entry by then
     CueTime cueTime_;
     Dimmer blackout_, panic_, master_;
     Steps<std::shared_ptr<const Frozen>> frozen_;  // null: nothing is frozen
-    Steps<int> loaded_{kNoCue};                    // of the list of its time
     Steps<bool> paused_, locked_, corrects_{true};
     ShiftCourses shifts_;
     PatternCourses patterns_;

@@ -40,14 +40,27 @@ std::vector<Input> repairs(const ShowState& now, const journal::State& wanted, T
     };
     const Controls& goal = wanted.controls;
     const bool entersCue = now.cue != goal.cue;
+    const std::size_t sides = std::min(goal.sides.size(), now.sides.size());
+    bool entersAny = entersCue;
+    for (std::size_t side = 0; side < sides; ++side) entersAny = entersAny || now.sides[side].cue != goal.sides[side].cue;
     // In a panic no cue is entered, nothing is paused and nothing is frozen.
-    const bool lifts = now.panic && (!goal.panic || entersCue || now.frozen != goal.frozen || now.paused != goal.paused);
+    const bool lifts = now.panic && (!goal.panic || entersAny || now.frozen != goal.frozen || now.paused != goal.paused);
     if (lifts) add(Kind::Restore);
     if (entersCue) add(Kind::Jump).cue = goal.cue;
     if ((entersCue ? -1 : now.loaded) != goal.loaded) add(Kind::Load).cue = goal.loaded;
+    for (std::size_t side = 0; side < sides; ++side) {
+        const auto addTo = [&](Kind kind, int cue) {
+            Input& input = add(kind);
+            input.cue = cue;
+            input.list = static_cast<int>(side) + 1;
+        };
+        const bool enters = entersCue || now.sides[side].cue != goal.sides[side].cue;  // the main cue may bring others
+        if (enters) addTo(Kind::Jump, goal.sides[side].cue);
+        if ((enters ? -1 : now.sides[side].loaded) != goal.sides[side].loaded) addTo(Kind::Load, goal.sides[side].loaded);
+    }
     if (now.blackout != goal.blackout) add(goal.blackout ? Kind::Dark : Kind::Light);
     if (now.frozen != goal.frozen) add(Kind::Freeze);
-    if ((now.paused && !entersCue) != goal.paused) add(Kind::Pause);
+    if ((now.paused && !entersAny) != goal.paused) add(Kind::Pause);
     if (now.master != goal.master) add(Kind::Master).level = goal.master;
     if (now.locked != goal.locked) add(Kind::Lock);
     if (now.corrects != wanted.corrects) add(Kind::Corrections);
@@ -81,6 +94,7 @@ std::optional<Resumption> resume(const Journal& journal, Time at, InputLog& inpu
         wanted.controls.cue =
             found == list->cues.end() || wanted.controls.cue < 0 ? -1 : static_cast<int>(found - list->cues.begin());
         wanted.controls.loaded = -1;
+        wanted.controls.sides.clear();  // the main cue brings them
         repair(wanted, at);
     }
     if (inputs.reader().next() == nullptr) return std::nullopt;

@@ -29,9 +29,15 @@ Result<Contact> readContact(const ConfigNode& node, std::set<std::string>& names
     banks.declarePlace(fields, contact.bank, "input", contact.input, "contact of its bank", kLastInput);
     fields.optional().read("closes", contact.closes, readAction);
     fields.optional().read("opens", contact.opens, readAction);
+    fields.optional().text("list", contact.list);
     TRY(fields.finish());
     if (!contact.closes && !contact.opens)
         return node.error(fmt::format("'{}' asks for nothing; say what it does when it 'closes' or 'opens'", contact.name));
+    const auto goes = [](const std::optional<ContactAction>& action) {
+        return action == ContactAction::Go || action == ContactAction::Back;
+    };
+    if (!contact.list.empty() && !goes(contact.closes) && !goes(contact.opens))
+        return node.error(fmt::format("'{}' gives neither 'go' nor 'back', so it needs no 'list'", contact.name));
     return contact;
 }
 

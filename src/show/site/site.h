@@ -129,6 +129,12 @@ enum class Button {
 
 std::string_view nameOf(Button button);  // its key in the site file: "go"
 
+struct SiteButton {
+    int number = 0;  // the device's own; unique
+    Button button = Button::Go;
+    std::string list{};  // of Go and Back: the name of a show's side list; empty: the main list
+};
+
 // What a contact asks for when it closes or opens: a door may give GO, an emergency button Panic.
 enum class ContactAction { Go, Back, Blackout, Dark, Light, Pause, Freeze, Panic, Restore };
 
@@ -137,6 +143,7 @@ struct Contact {
     std::size_t bank = 0;                        // of Site::contactBanks
     int input = 0;                               // its place in the bank, from 0; unique
     std::optional<ContactAction> closes, opens;  // at least one
+    std::string list;                            // of Go and Back: the name of a show's side list; empty: the main list
 };
 
 // The nominal site: the place as the technician described it. It is read at the start and constant
@@ -151,7 +158,7 @@ struct Site {
     std::vector<Bank> relayBanks;            // each with at least one relay
     std::vector<Relay> relays;
     std::optional<DeviceConfig> cueController;
-    std::vector<std::pair<int, Button>> buttons;  // controller button -> what it does; numbers are unique
+    std::vector<SiteButton> buttons;
     std::vector<Bank> contactBanks;               // each with at least one contact
     std::vector<Contact> contacts;
     std::optional<DeviceConfig> camera;

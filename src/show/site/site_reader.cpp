@@ -108,17 +108,32 @@ Result<Fixture> readFixture(const ConfigNode& node, std::set<std::string>& names
     return fixture;
 }
 
-Result<std::vector<std::pair<int, Button>>> readButtons(const ConfigNode& node) {
-    std::vector<std::pair<int, Button>> buttons;
+Result<std::vector<SiteButton>> readButtons(const ConfigNode& node) {
+    std::vector<SiteButton> buttons;
     std::set<int> numbers;
+    const auto read = [&](ConfigFields& fields, Button button, const std::string& list) {
+        std::optional<int> number;
+        fields.read(nameOf(button), number, onceNumbered(numbers, "button", 1, kLastButton));
+        if (number) buttons.push_back({*number, button, list});
+    };
     ConfigFields fields(node);
     for (int i = 0; i <= static_cast<int>(Button::Write); ++i) {
         const auto button = static_cast<Button>(i);
         if (button != Button::Go) fields.optional();
-        std::optional<int> number;
-        fields.read(nameOf(button), number, onceNumbered(numbers, "button", 1, kLastButton));
-        if (number) buttons.emplace_back(*number, button);
+        read(fields, button, "");
     }
+    bool hasLists = false;
+    fields.optional().read("lists", hasLists, [&](const ConfigNode& lists) -> Result<bool> {
+        ConfigFaults faults;
+        for (const auto& [name, list] : TRY(lists.entries())) {
+            ConfigFields ofList(list);
+            read(ofList, Button::Go, name);
+            read(ofList.optional(), Button::Back, name);
+            if (const auto done = ofList.finish(); !done) faults.add(done.error());
+        }
+        TRY(faults.result());
+        return true;
+    });
     TRY(fields.finish());
     return buttons;
 }

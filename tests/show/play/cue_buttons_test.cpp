@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const std::vector<std::pair<int, Button>> kButtons = {{1, Button::Go}, {2, Button::Back}, {7, Button::Blackout}};
+const std::vector<SiteButton> kButtons = {{1, Button::Go}, {2, Button::Back}, {7, Button::Blackout}};
 
 TEST(CueButtons, each_button_asks_for_what_the_site_says) {
     CueButtons buttons(kButtons);
