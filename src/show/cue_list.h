@@ -100,11 +100,12 @@ struct CueList {
         std::vector<Movement> movements(Time entered, Time at, Time least) const;
     };
     std::vector<Cue> cues;
-    bool loops = false;        // the first cue comes after the last one
+    bool loops = false;                                      // the first cue comes after the last one
     std::vector<std::shared_ptr<const CueList>> sides = {};  // for the same site; they have no sides of their own
-    std::string name = {};     // of a side
-    std::optional<int> start = {};  // of a side: entered when the main list leaves the dark
-    std::vector<std::size_t> windLists = {};  // which list moves the wind of each output: 0 is this one, else the side, from 1; a missing one: 0
+    std::string name = {};                                   // of a side
+    std::optional<int> start = {};                           // of a side: entered when the main list leaves the dark
+    std::vector<std::size_t> windLists =
+        {};                    // which list moves the wind of each output: 0 is this one, else the side, from 1; a missing one: 0
     Look dark;                 // what is seen before the first cue: black pictures, levels 0, relays in their safe states
     Time goInterval{};         // after a cue was entered, GO is ignored for this long
     double farthestShift = 0;  // a correction that moves a corner of a projector's picture farther is ignored, pixels

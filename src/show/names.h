@@ -17,8 +17,8 @@ std::vector<std::string> namesOf(const Range& things) {
     return names;
 }
 
-// The list that is called so, as Input::list: "" is the main one, all others are `sides`; -1: none is
-// called so.
+// The list that is called so, as Input::list: "" is the main one, all others are `sides`; -1: none
+// is called so.
 int listNamed(std::string_view name, const std::vector<std::string>& sides);
 
 // The index of `name` among `known`. Error: "no output is called 'lefd' (did you mean 'left'?)".

@@ -190,8 +190,7 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
         return TRY(node.choice({"stay", "loop"})) == 1;
     });
     show.loops = rules.loops;
-    readTracking(rules.version, fields, "lists", show.sides,
-                 [&](const ConfigNode& node) { return readSides(node, rules); });
+    readTracking(rules.version, fields, "lists", show.sides, [&](const ConfigNode& node) { return readSides(node, rules); });
     fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, rules); });
     std::size_t start = show.cues.size();  // dark
     readTracking(rules.version, fields, "start", start, [&](const ConfigNode& node) {

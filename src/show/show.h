@@ -4,8 +4,8 @@
 #include "show/cue.h"
 #include "show/cue_list.h"
 #include "show/schedule/schedule.h"
-#include "show/side_list.h"
 #include "show/show_state.h"
+#include "show/side_list.h"
 #include "show/site/site.h"
 #include "show/source.h"
 
@@ -66,9 +66,7 @@ struct Show {
     Result<CueList> bind(const Site& site) const;
 
     // The cues of a list, by Input::list.
-    const std::vector<Cue>& cuesOf(int list) const {
-        return list == 0 ? cues : sides[static_cast<std::size_t>(list) - 1].cues;
-    }
+    const std::vector<Cue>& cuesOf(int list) const { return list == 0 ? cues : sides[static_cast<std::size_t>(list) - 1].cues; }
     // Whether the show waits for no input once a cue is entered: each cue from there on follows the
     // one before.
     bool needsNoGoFrom(std::size_t cue) const;

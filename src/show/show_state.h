@@ -74,15 +74,15 @@ struct ListPlace {
 
 // Where the cues are, and what the operator does to them.
 struct Controls {
-    int cue = -1;               // index into Show::cues of the current cue; -1 before the first
-    int loaded = -1;            // the cue that GO is to enter; -1: the one after the current one
-    std::optional<int> next{};  // the cue that GO enters; nothing: there is none
-    bool blackout = false;      // pictures and fixtures are held dark
-    bool panic = false;         // they are held dark, and relays safe, until the operator restores them
-    bool paused = false;        // the cues' time is paused
-    bool frozen = false;        // what is seen is kept, whatever the cues do
-    float master = 1;           // the factor of pictures and levels that is wanted
-    bool locked = false;        // nothing but darkness is taken from hand controller, contacts and windows
+    int cue = -1;                    // index into Show::cues of the current cue; -1 before the first
+    int loaded = -1;                 // the cue that GO is to enter; -1: the one after the current one
+    std::optional<int> next{};       // the cue that GO enters; nothing: there is none
+    bool blackout = false;           // pictures and fixtures are held dark
+    bool panic = false;              // they are held dark, and relays safe, until the operator restores them
+    bool paused = false;             // the cues' time is paused
+    bool frozen = false;             // what is seen is kept, whatever the cues do
+    float master = 1;                // the factor of pictures and levels that is wanted
+    bool locked = false;             // nothing but darkness is taken from hand controller, contacts and windows
     std::vector<ListPlace> sides{};  // of each list that plays beside the main one
     friend bool operator==(const Controls&, const Controls&) = default;
 };

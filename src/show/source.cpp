@@ -33,7 +33,7 @@ constexpr double kLongestTurn = 3600;
 constexpr double kSlowest = 0.01, kFastest = 10;  // videos, casts
 constexpr double kLongestVideo = 86400;           // seconds
 constexpr int kMostTimes = 10000;
-constexpr double kWidestLamp = 2;                 // metres
+constexpr double kWidestLamp = 2;  // metres
 constexpr int kMostSamples = 128;
 constexpr std::size_t kMostLamps = 8, kMostActors = 50, kMostBeams = 8;
 
@@ -180,8 +180,9 @@ Result<VideoSource> readAs(const ConfigNode& node) {
     fields.optional().read("to", video.to, [](const ConfigNode& value) -> Result<std::optional<Time>> {
         return std::optional(fromSeconds(TRY(value.number(0, kLongestVideo, "s"))));
     });
-    fields.optional().read("loop", loops,
-                           [](const ConfigNode& value) -> Result<std::optional<bool>> { return std::optional(TRY(value.boolean())); });
+    fields.optional().read("loop", loops, [](const ConfigNode& value) -> Result<std::optional<bool>> {
+        return std::optional(TRY(value.boolean()));
+    });
     fields.optional().integer("times", video.times, 1, kMostTimes);
     fields.optional().choice("at_end", atEnd, {"stay", "dark"});
     fields.optional().number("speed", video.speed, kSlowest, kFastest);

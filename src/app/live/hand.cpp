@@ -52,10 +52,9 @@ void Hand::tick(Time moment) {
     }
     for (std::size_t bank = 0; bank < devices_.contactBanks.size(); ++bank)
         while (const auto change = devices_.contactBanks[bank]->poll())
-            submit(
-                show::inputFor(site_, bank, change->contact, change->closed, change->witnessed, showClock_.showTime(change->at),
-                               sides_),
-                change->at);
+            submit(show::inputFor(site_, bank, change->contact, change->closed, change->witnessed,
+                                  showClock_.showTime(change->at), sides_),
+                   change->at);
     const Time showTime = showClock_.showTime(moment);
     inputs_.foresee(showTime);
     while (const show::LoggedInput* const logged = outcomes_.next())

@@ -103,8 +103,8 @@ Result<Picture> readPicture(const show::VideoSource& source, const Reading& read
     if (const Time length = stream->content().length; source.to && *source.to > length)
         return Error(fmt::format("{}: it is {:.3f} s long, so it cannot play to {:.3f} s", source.file.string(), seconds(length),
                                  seconds(*source.to)));
-    return Picture{
-        render::VideoSource{std::move(stream), source.from, source.to, source.times, source.endsDark, source.speed}, {}};
+    return Picture{render::VideoSource{std::move(stream), source.from, source.to, source.times, source.endsDark, source.speed},
+                   {}};
 }
 
 Result<Picture> readPicture(const show::CameraSource&, const Reading& reading) {

@@ -46,10 +46,10 @@ using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
 constexpr line::Part kShortening[] = {
-    line::Scores, line::Rate,   line::Next,      line::Schedule, line::Sides, line::Sides, line::Next,      line::Cue,    line::Cue,
-    line::Late,   line::Fade,   line::Left,      line::Next,     line::Next,      line::Loaded, line::Locked,
-    line::Paused, line::Frozen, line::SettingUp, line::Cue,      line::SettingUp, line::Loaded, line::Locked,
-    line::Master, line::Paused, line::Frozen,    line::Sides,    line::Panic,    line::Blackout,  line::Cue};
+    line::Scores, line::Rate,   line::Next,      line::Schedule, line::Sides,     line::Sides,  line::Next,   line::Cue,
+    line::Cue,    line::Late,   line::Fade,      line::Left,     line::Next,      line::Next,   line::Loaded, line::Locked,
+    line::Paused, line::Frozen, line::SettingUp, line::Cue,      line::SettingUp, line::Loaded, line::Locked, line::Master,
+    line::Paused, line::Frozen, line::Sides,     line::Panic,    line::Blackout,  line::Cue};
 
 Forms cueForms(const RunStatus& status) {
     const int cue = status.controls.cue;

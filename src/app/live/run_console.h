@@ -21,18 +21,18 @@ namespace fantascope::app {
 // What the person at the terminal sees of a run at one moment.
 struct RunStatus {
     Time showTime{};
-    show::Controls controls{};              // with the current cue
-    int cues = 0;                           // their number
-    show::CueNumber number = 0;             // of the current cue
-    std::string cueName, nextName;          // empty: there is none
-    std::string nextNote;                   // of the next cue; empty: it has none
-    std::string loadedName;                 // of the cue that GO enters instead; empty: GO enters that one, too
-    Time waitLeft{};                        // until the current cue begins to change what is seen; 0: it has begun
-    Time fadeLeft{};                        // until its look is whole; 0: it is
-    std::optional<Time> untilNext;          // until the next cue comes by a follow or by the schedule; none: it waits
+    show::Controls controls{};      // with the current cue
+    int cues = 0;                   // their number
+    show::CueNumber number = 0;     // of the current cue
+    std::string cueName, nextName;  // empty: there is none
+    std::string nextNote;           // of the next cue; empty: it has none
+    std::string loadedName;         // of the cue that GO enters instead; empty: GO enters that one, too
+    Time waitLeft{};                // until the current cue begins to change what is seen; 0: it has begun
+    Time fadeLeft{};                // until its look is whole; 0: it is
+    std::optional<Time> untilNext;  // until the next cue comes by a follow or by the schedule; none: it waits
     struct Side {
         std::string name;
-        bool hasKeys = false;            // GO, back and load go to it
+        bool hasKeys = false;               // GO, back and load go to it
         std::string cueName{}, nextName{};  // empty: it is dark; nothing follows by itself
         std::optional<Time> untilNext{};
     };

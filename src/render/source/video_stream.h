@@ -22,10 +22,10 @@ namespace fantascope::render {
 // output asks for a moment of the video. If outputs ask for different moments, as when the video
 // began earlier on one of them, each gets its own decoder.
 //
-// Frames are kept as RGBA, 4 bytes per pixel: kOpening from where it begins, kAhead for every moment
-// asked for, and kSpare; some 100 MB for one moment of 1920 x 1080. A video that begins, restarts
-// or loops shows its opening at once while further frames are decoded. If a frame cannot be
-// decoded, the one before it stays.
+// Frames are kept as RGBA, 4 bytes per pixel: kOpening from where it begins, kAhead for every
+// moment asked for, and kSpare; some 100 MB for one moment of 1920 x 1080. A video that begins,
+// restarts or loops shows its opening at once while further frames are decoded. If a frame cannot
+// be decoded, the one before it stays.
 class VideoStream {
 public:
     // What happens if a frame is not decoded in time.

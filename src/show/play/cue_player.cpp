@@ -6,6 +6,7 @@
 #include "core/random.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace fantascope::show {
@@ -120,7 +121,8 @@ void CuePlayer::begin(std::shared_ptr<const CueList> list, std::span<const Posit
     const CueList::Cue& wanted = cue < 0 ? dark : list->cues[static_cast<std::size_t>(cue)];
     const Time least = hasBegun ? list->blackoutFade : Time{};
     drop(at);
-    Entry entry{.at = at, .list = list, .cue = cue, .entered = entered, .next = {}, .number = ++begun_, .seen = entries_.back().seen};
+    Entry entry{
+        .at = at, .list = list, .cue = cue, .entered = entered, .next = {}, .number = ++begun_, .seen = entries_.back().seen};
     entry.whole = std::max(entered + wanted.length(), at + least);
     entry.next = followerOf(*list, way.back());
     entry.brings = broughtOn(way, entries_.back().cue, *list);
@@ -166,6 +168,7 @@ void CuePlayer::foresee(Time time, Time kept) {
     const auto forget = [&] {
         const auto next = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.at > kept; });
         if (next - entries_.begin() > 1) entries_.erase(entries_.begin(), next - 1);
+        std::erase_if(ended_, [&](const Ended& ended) { return ended.at <= kept; });
     };
     while (entries_.back().entered <= time && entries_.back().next) {
         followOn();
@@ -174,9 +177,19 @@ void CuePlayer::foresee(Time time, Time kept) {
     forget();
 }
 
-void CuePlayer::rewind(Time time) {
-    drop(time);
-    followOn();
+void CuePlayer::enterBrought(int cue, Time at, Time ago) {
+    const auto rest = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.at > at; });
+    ended_.push_back({at, begun_, {std::make_move_iterator(rest), std::make_move_iterator(entries_.end())}});
+    entries_.erase(rest, entries_.end());
+    enter(cue, at, ago);
+}
+
+void CuePlayer::takeBack(Time time) {
+    for (; !ended_.empty() && ended_.back().at > time; ended_.pop_back()) {
+        while (entries_.back().number > ended_.back().number) entries_.pop_back();
+        std::ranges::move(ended_.back().rest, std::back_inserter(entries_));
+    }
+    ended_.clear();  // nobody asks for an earlier time
 }
 
 void CuePlayer::revise(std::shared_ptr<const CueList> list, Time at) {

@@ -63,11 +63,11 @@ public:
     struct Entry {
         Time at = Time::min();
         std::shared_ptr<const CueList> list;
-        int cue = -1;                  // of `list`; -1: the dark before the first
-        Time entered = Time::min();    // when the cue was entered, at `at` or earlier
-        Time whole = Time::min();      // when the cue's look is whole
-        std::optional<Position> next;  // that follows by itself
-        bool isGone = false;           // `list` has lost the cue that is seen; `cue` is the nearest one before it
+        int cue = -1;                   // of `list`; -1: the dark before the first
+        Time entered = Time::min();     // when the cue was entered, at `at` or earlier
+        Time whole = Time::min();       // when the cue's look is whole
+        std::optional<Position> next;   // that follows by itself
+        bool isGone = false;            // `list` has lost the cue that is seen; `cue` is the nearest one before it
         std::uint64_t number = 0;       // goes up from entry to entry; the entries of one cue share it
         std::vector<Brought> brings{};  // that are entered now
         LookCourses seen;
@@ -85,8 +85,11 @@ public:
     // Works out the follows until `time`. What was over before `kept` is forgotten, so that a loop
     // may go on for ever.
     void foresee(Time time, Time kept);
-    // Works the follows out anew, from those after `time`.
-    void rewind(Time time);
+    // Enters a cue as enter() does, because another list brings it. takeBack() undoes it as long as
+    // nothing was entered otherwise since.
+    void enterBrought(int cue, Time at, Time ago);
+    // Everything that was brought after `time` has not been, and what was to come is to come again.
+    void takeBack(Time time);
 
     // The list after the newest revision.
     const CueList& cues() const { return *entries_.back().list; }
@@ -126,6 +129,13 @@ private:
 
     std::set<SourceId> sources_;  // of all looks: at most so many layers add their light on one output
     LookCourses::Room composed_;  // of all looks and outputs: an upper bound for one output in a chain of fades
+    // What a brought cue has put an end to.
+    struct Ended {
+        Time at{};
+        std::uint64_t number = 0;  // of the newest entry before
+        std::vector<Entry> rest;   // that was to come after `at`
+    };
+    std::vector<Ended> ended_;    // by time
     std::uint64_t begun_ = 0;     // entries with a number so far
     std::vector<Entry> entries_;  // by time, future ones last; the first one is the dark before any cue
 };

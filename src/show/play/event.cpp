@@ -27,7 +27,8 @@ struct Teller {
     }
     std::string operator()(const event::CueEntered& entered) const {
         if (entered.cue < 0) return inList(entered.list) + "no cue: it gets dark";
-        return fmt::format("{}cue {}: {}", inList(entered.list), placeOf(entered.number, entered.cue, entered.cues), entered.name);
+        return fmt::format("{}cue {}: {}", inList(entered.list), placeOf(entered.number, entered.cue, entered.cues),
+                           entered.name);
     }
     std::string operator()(const event::HoldChanged& change) const {
         switch (change.hold) {
@@ -51,7 +52,8 @@ struct Teller {
     }
     std::string operator()(const event::CueLoaded& loaded) const {
         if (loaded.cue < 0) return inList(loaded.list) + "GO enters the next cue";
-        return fmt::format("{}GO enters cue {}: {}", inList(loaded.list), placeOf(loaded.number, loaded.cue, loaded.cues), loaded.name);
+        return fmt::format("{}GO enters cue {}: {}", inList(loaded.list), placeOf(loaded.number, loaded.cue, loaded.cues),
+                           loaded.name);
     }
     std::string operator()(const event::ListChosen& chosen) const {
         return "GO, back and load are now for " + (chosen.list.empty() ? "the show's own cues" : "'" + chosen.list + "'");

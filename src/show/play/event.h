@@ -153,10 +153,11 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ListChosen, ShowResumed, ScheduleCalled,
-                          NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, FaultBegan, FaultEnded, SendersChanged,
-                          PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan,
-                          CauseEnded, PatternFitted, LampsTrimmed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What =
+    std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ListChosen, ShowResumed, ScheduleCalled,
+                 NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, FaultBegan, FaultEnded, SendersChanged, PictureTaken,
+                 PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted,
+                 LampsTrimmed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

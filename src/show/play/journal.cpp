@@ -234,7 +234,8 @@ std::uint64_t hashOf(const CueList& list) {
         if (!cue.followers.empty()) text += fmt::format(" {} {} {}", fmt::join(cue.followers, ","), cue.times, list.seed);
         for (const CueList::Cue::SideCue& with : cue.with) text += fmt::format(" with {} {}", with.list, with.cue);
     }
-    for (const auto& side : list.sides) text += fmt::format("\nlist {} {} {}", side->name, side->start.value_or(-1), hashOf(*side));
+    for (const auto& side : list.sides)
+        text += fmt::format("\nlist {} {} {}", side->name, side->start.value_or(-1), hashOf(*side));
     return fnv1a(text);
 }
 

@@ -158,7 +158,8 @@ void LookCourses::addLayers(std::size_t output, Time time, OutputState& out) con
         const float opacity = layer.opacity.valueAt(time);
         if (opacity <= 0) continue;
         const auto end = out.layers.begin() + static_cast<std::ptrdiff_t>(ofOthers);
-        const auto same = std::find_if(out.layers.begin(), end, [&](const LayerState& other) { return other.source == layer.source; });
+        const auto same =
+            std::find_if(out.layers.begin(), end, [&](const LayerState& other) { return other.source == layer.source; });
         if (same == end)
             out.layers.push_back({layer.source, opacity, Blend::Add, layer.begun});
         else

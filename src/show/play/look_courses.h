@@ -16,8 +16,9 @@
 namespace fantascope::show {
 
 // How everything that is seen moves: the courses of each layer, picture, channel and wind, and the
-// state of each relay, as one list moves them. A layer that only adds its light has a course of its own. Layers of a
-// picture that is composed in order come and go as a whole. Value type; thread: reentrant.
+// state of each relay, as one list moves them. A layer that only adds its light has a course of its
+// own. Layers of a picture that is composed in order come and go as a whole. Value type; thread:
+// reentrant.
 class LookCourses {
 public:
     // A look that has been seen forever, in the usual wind.

@@ -128,7 +128,7 @@ Outcome Playback::moveOn(const Input& input, Time at) {
     if (paused_.last()) letGoOn(at);
     if (wanted == kNoCue && input.list == 0) frozen_.set(at, nullptr);  // a freeze must not keep the light on
     played.loaded.set(at, kNoCue);
-    rewindSides(cueTime_.at(at));
+    takeBackSides(cueTime_.at(at));
     played.player.enter(*wanted, cueTime_.at(at), input.kind == Input::Kind::Jump ? input.ago : Time{});
     foreseeCues(cueTime_.at(at));
     return Outcome::Taken;
@@ -223,7 +223,7 @@ Outcome Playback::revise(std::shared_ptr<const CueList> list, Time at) {
     if (!std::ranges::equal(list->sides, old.sides, sameName)) return Outcome::OtherLists;
     cueTime_.tick(at);
     const Time cueTime = cueTime_.at(at);
-    rewindSides(cueTime);
+    takeBackSides(cueTime);
     for (std::size_t i = 0; i < lists_.size(); ++i) {
         auto& [player, loads] = lists_[i];
         const std::shared_ptr<const CueList>& revised = i == 0 ? list : list->sides[i - 1];
@@ -236,8 +236,8 @@ Outcome Playback::revise(std::shared_ptr<const CueList> list, Time at) {
     return Outcome::Taken;
 }
 
-// Works out the follows of all lists, and what the main list brings of the others, until a cue time.
-// In steps, since a list forgets.
+// Works out the follows of all lists, and what the main list brings of the others, until a cue
+// time. In steps, since a list forgets.
 void Playback::foreseeCues(Time time) {
     const bool hasSides = lists_.size() > 1;
     for (bool isDone = false; !isDone;) {
@@ -255,13 +255,13 @@ void Playback::foreseeCues(Time time) {
 void Playback::bring(Time at, const CuePlayer::Brought& brought) {
     CuePlayer& player = lists_[brought.side + 1].player;
     player.foresee(at, at - kKept);
-    player.enter(brought.cue, at, at - brought.entered);
+    player.enterBrought(brought.cue, at, at - brought.entered);
 }
 
 // Takes back what the main list was to bring after a cue time.
-void Playback::rewindSides(Time time) {
+void Playback::takeBackSides(Time time) {
     if (time >= sidesKnown_) return;
-    for (Played& side : std::span(lists_).subspan(1)) side.player.rewind(time);
+    for (Played& side : std::span(lists_).subspan(1)) side.player.takeBack(time);
     sidesKnown_ = time;
     brought_ = main().at(time).number;
 }

@@ -89,16 +89,14 @@ public:
     Time waitLeftAt(Time time, int list = 0) const { return playerOf(list).waitLeftAt(cueTime_.at(time)); }
     // The cue time from `time` until the next cue follows by itself; nothing if the current cue
     // waits for an input.
-    std::optional<Time> untilFollowAt(Time time, int list = 0) const {
-        return playerOf(list).untilFollowAt(cueTime_.at(time));
-    }
+    std::optional<Time> untilFollowAt(Time time, int list = 0) const { return playerOf(list).untilFollowAt(cueTime_.at(time)); }
     // The cue that follows then.
     std::optional<int> followerAt(Time time, int list = 0) const { return playerOf(list).followerAt(cueTime_.at(time)); }
 
-    // What is seen at `time`. Any time will do, but a list that loops, or has others beside it, must
-    // have been foreseen until then. For a time that is forgotten it gives what is oldest. The cost is a few binary searches
-    // and the evaluation of each course. The call allocates only when it fills `out` for the first
-    // time.
+    // What is seen at `time`. Any time will do, but a list that loops, or has others beside it,
+    // must have been foreseen until then. For a time that is forgotten it gives what is oldest. The
+    // cost is a few binary searches and the evaluation of each course. The call allocates only when
+    // it fills `out` for the first time.
     void stateAt(Time time, ShowState& out) const;
 
 private:
@@ -127,13 +125,13 @@ private:
     ListPlace placeAt(Time time, const Played& list) const;
     void foreseeCues(Time time);
     void bring(Time at, const CuePlayer::Brought& brought);
-    void rewindSides(Time time);
+    void takeBackSides(Time time);
     void freeze(Time at);
     bool isPanicAt(Time time) const { return panic_.wantedAt(time) < 1; }
     static bool isTooLate(const Input& input);
     bool isLockedOut(const Input& input, Time at) const;
 
-    Gusts gusts_;       // of the first list's seed; a revision does not change them
+    Gusts gusts_;                // of the first list's seed; a revision does not change them
     std::vector<Played> lists_;  // the main one, then CueList::sides
     Time sidesKnown_{};          // cue time until which the sides know what the main list brings
     std::uint64_t brought_ = 0;  // the number of the main list's last entry by then

@@ -133,6 +133,7 @@ struct SiteButton {
     int number = 0;  // the device's own; unique
     Button button = Button::Go;
     std::string list{};  // of Go and Back: the name of a show's side list; empty: the main list
+    friend bool operator==(const SiteButton&, const SiteButton&) = default;
 };
 
 // What a contact asks for when it closes or opens: a door may give GO, an emergency button Panic.
@@ -143,7 +144,7 @@ struct Contact {
     std::size_t bank = 0;                        // of Site::contactBanks
     int input = 0;                               // its place in the bank, from 0; unique
     std::optional<ContactAction> closes, opens;  // at least one
-    std::string list;                            // of Go and Back: the name of a show's side list; empty: the main list
+    std::string list{};                          // of Go and Back: the name of a show's side list; empty: the main list
 };
 
 // The nominal site: the place as the technician described it. It is read at the start and constant
@@ -159,7 +160,7 @@ struct Site {
     std::vector<Relay> relays;
     std::optional<DeviceConfig> cueController;
     std::vector<SiteButton> buttons;
-    std::vector<Bank> contactBanks;               // each with at least one contact
+    std::vector<Bank> contactBanks;  // each with at least one contact
     std::vector<Contact> contacts;
     std::optional<DeviceConfig> camera;
     std::optional<NominalCamera> nominalCamera;  // set whenever `camera` is

@@ -63,9 +63,12 @@ private:
 // Finds what is seen by going through everything that happened from the beginning.
 class Model {
 public:
-    explicit Model(const CueList& list) : list_(list), dark_{.look = list.dark, .fade = list.darkFade, .follow = {}} {
-        tracks_.push_back({&list, {}});
-        for (const auto& side : list.sides) tracks_.push_back({side.get(), {}});
+    explicit Model(const CueList& list) : list_(list) {
+        const auto add = [&](const CueList& added) {
+            tracks_.push_back({&added, {.look = added.dark, .fade = added.darkFade, .follow = {}}, {}});
+        };
+        add(list);
+        for (const auto& side : list.sides) add(*side);
     }
 
     // Until `time`, with the cues that follow by themselves, and with what they bring.
@@ -223,6 +226,7 @@ private:
     };
     struct Track {
         const CueList* list;
+        CueList::Cue dark;
         std::vector<Entered> entered;
         int loaded = -1;
     };
@@ -306,8 +310,8 @@ private:
         if (!cue.follow || entered.cueTime + *cue.follow > cueTime) return false;
         const auto turns = static_cast<int>(std::ranges::count(entered.turned, entered.cue));
         if (!cue.followers.empty() && (cue.times == 0 || turns < cue.times)) {
-            const std::uint64_t chance =
-                streamSeed(track.list->seed, {static_cast<std::uint64_t>(entered.cue), static_cast<std::uint64_t>(entered.follows)});
+            const std::uint64_t chance = streamSeed(
+                track.list->seed, {static_cast<std::uint64_t>(entered.cue), static_cast<std::uint64_t>(entered.follows)});
             if (cue.times > 0) entered.turned.push_back(entered.cue);
             entered.cue = cue.followers[chance % cue.followers.size()];
         } else {
@@ -336,8 +340,8 @@ private:
             if (candidate.at <= time) freeze = &candidate;
         return freeze;
     }
-    const CueList::Cue& cueOf(const Track& track, int cue) const {
-        return cue < 0 ? dark_ : track.list->cues[static_cast<std::size_t>(cue)];
+    static const CueList::Cue& cueOf(const Track& track, int cue) {
+        return cue < 0 ? track.dark : track.list->cues[static_cast<std::size_t>(cue)];
     }
     static int count(const Track& track) { return static_cast<int>(track.list->cues.size()); }
     static bool hasNext(const Track& track, int cue) { return track.list->loops || cue + 1 < count(track); }
@@ -346,7 +350,6 @@ private:
     Track& track(int list) { return tracks_[static_cast<std::size_t>(list)]; }
 
     const CueList& list_;
-    CueList::Cue dark_;
     std::vector<Track> tracks_;  // the main list first
     std::vector<Run> runs_{{Time{}, Time{}, true}};
     std::vector<Freeze> freezes_;

@@ -19,7 +19,6 @@ using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Pair;
 using testing::StartsWith;
 
 constexpr std::string_view kSite = R"(fantascope: site
@@ -45,7 +44,7 @@ relays: [{name: road-north, bank: street, coil: 4, safe: on}, {name: fog, bank: 
          {name: road-south, bank: street, coil: 0, safe: on}]
 cue_controller:
   device: {driver: simulated}
-  buttons: {go: 1, blackout: 3}
+  buttons: {go: 1, blackout: 3, lists: {Bar: {go: 7, back: 8}}}
 contact_banks: [{name: doors, device: {driver: simulated}}]
 contacts:
   - {name: gate, input: 4, closes: go}
@@ -126,7 +125,8 @@ TEST(Site, reads_everything_that_the_file_says) {
     EXPECT_EQ(site->relays[1].bank, 1u);
     EXPECT_FALSE(site->relays[1].safe);
     EXPECT_EQ(site->coilCount(0), 5u);
-    EXPECT_THAT(site->buttons, ElementsAre(Pair(1, Button::Go), Pair(3, Button::Blackout)));
+    EXPECT_THAT(site->buttons, ElementsAre(SiteButton{1, Button::Go}, SiteButton{3, Button::Blackout},
+                                           SiteButton{7, Button::Go, "Bar"}, SiteButton{8, Button::Back, "Bar"}));
     EXPECT_EQ(site->contacts[0].bank, 0u) << "there is one";
     EXPECT_EQ(site->contacts[0].closes, ContactAction::Go);
     EXPECT_EQ(site->contacts[0].opens, std::nullopt);
@@ -242,6 +242,9 @@ TEST(Site, what_must_differ_is_refused_when_it_is_the_same) {
               "site.yaml:21:49: relays[2].coil: 4 is taken by another relay of its bank; each needs its own");
     EXPECT_EQ(siteRefusalAfter("blackout: 3", "blackout: 1"),
               "site.yaml:24:30: cue_controller.buttons.blackout: 1 is taken by another button; each needs its own");
+    EXPECT_THAT(siteRefusalAfter("{go: 7, back: 8}", "{go: 7, back: 3}"),
+                HasSubstr("cue_controller.buttons.lists.Bar.back: 3 is taken by another button"));
+    EXPECT_THAT(siteRefusalAfter("{go: 7, back: 8}", "{back: 8}"), HasSubstr("buttons.lists.Bar: 'go' is missing"));
     EXPECT_EQ(siteRefusalAfter("input: 0", "input: 4"),
               "site.yaml:28:30: contacts[1].input: 4 is taken by another contact of its bank; each needs its own");
 }
