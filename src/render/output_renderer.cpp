@@ -71,6 +71,19 @@ Result<void> OutputRenderer::exchange(show::SourceId source, int number, const P
     return gpu::checkMemory();
 }
 
+Result<void> OutputRenderer::add(show::SourceId source, const PictureSource& picture) {
+    auto drawn = TRY(makeDrawnSource(picture, placeOn(place_, placeOf(picture, canvasAspect_)), tools_));
+    composer_->begin();
+    drawn->paint(Moment{}, composer_->nextPicture());
+    sources_.add(source, {picture, std::move(drawn)});
+    return gpu::checkMemory();
+}
+
+void OutputRenderer::dropAllBut(const PictureSources& sources) {
+    std::erase_if(exchanges_, [&](const Exchanged& each) { return sources.find(each.source) == nullptr; });
+    sources_.eraseIf([&](show::SourceId id) { return sources.find(id) == nullptr; });
+}
+
 // What shows a layer: the exchange that it names, or the source itself.
 DrawnSource& OutputRenderer::drawnOf(const show::LayerState& layer) {
     for (const Exchanged& exchanged : exchanges_)

@@ -68,12 +68,18 @@ public:
     // with another pattern. Does nothing if it is ready, or if there is no such source.
     // Error: OpenGL has no memory left.
     Result<void> exchange(show::SourceId source, int number, const PatternSource& pattern);
+    // Makes ready to draw another source, and draws it once. Error: as create(), or OpenGL has no
+    // memory left.
+    Result<void> add(show::SourceId source, const PictureSource& picture);
+    bool has(show::SourceId source) const { return sources_.find(source) != nullptr; }
+    // Forgets all sources but these, which no layer names any more, and their exchanges.
+    void dropAllBut(const PictureSources& sources);
     // Draws every source once and every combination of layers, so that nothing is compiled during
     // the show. Error: OpenGL has no memory left.
     Result<void> warmUp(unsigned framebuffer);
     // Draws the output's state at show time `time`, in the wind of that time, into the display's
-    // `framebuffer`. Layers name sources of create()'s. Does not allocate once every source has
-    // been shown.
+    // `framebuffer`. Layers name sources of create() and add(). Does not allocate once every source
+    // has been shown.
     void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
     // How long the last draw() spent on sending instances and pictures to the GPU.
     Time uploading() const { return tools_.uploads.sum(); }

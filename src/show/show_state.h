@@ -110,6 +110,7 @@ struct ShowState : Look, Controls {
     Time cueTime{};                    // by which videos, shadows and patterns move
     bool moves = true;                 // cueTime goes on; else it stands still
     std::uint64_t inputs = 0;          // how many inputs have taken effect so far
+    std::uint64_t revision = 0;        // how many revisions of the show are among them
     friend bool operator==(const ShowState&, const ShowState&) = default;
 };
 

@@ -10,8 +10,8 @@
 
 namespace fantascope::show {
 
-// The id of a source. A name keeps its id for the program's life, in every revision of the show and
-// wherever it is in the file (SourceNames).
+// The id of a source. A name keeps its id in every revision of the show and wherever it is in the
+// file, until it stands for another picture (SourceNames).
 struct SourceId {
     std::uint32_t value = 0;
     friend auto operator<=>(const SourceId&, const SourceId&) = default;
@@ -22,11 +22,16 @@ class SourceNames {
 public:
     // The id of a name; a new name gets the next id.
     SourceId idOf(const std::string& name) {
-        return {ids_.try_emplace(name, static_cast<std::uint32_t>(ids_.size())).first->second};
+        const auto [found, isNew] = ids_.try_emplace(name, next_);
+        if (isNew) ++next_;
+        return {found->second};
     }
+    // From now on the name stands for another picture, and has another id.
+    void renew(const std::string& name) { ids_.erase(name); }
 
 private:
     std::map<std::string, std::uint32_t> ids_;
+    std::uint32_t next_ = 0;
 };
 
 // A map from some sources to values, in the order in which they were added.
@@ -49,6 +54,9 @@ public:
     const Value* find(SourceId source) const {
         const auto found = std::ranges::find(entries_, source, &Entry::first);
         return found == entries_.end() ? nullptr : &found->second;
+    }
+    void eraseIf(auto isGone) {
+        std::erase_if(entries_, [&](const Entry& entry) { return isGone(entry.first); });
     }
     auto begin() const { return entries_.begin(); }
     auto end() const { return entries_.end(); }

@@ -21,12 +21,14 @@ namespace fantascope::show {
 struct PatternSource {
     static constexpr std::string_view kKey = "pattern";
     std::filesystem::path file;  // a *.pattern.yaml
+    friend bool operator==(const PatternSource&, const PatternSource&) = default;
 };
 
 // The whole canvas in one colour.
 struct SolidSource {
     static constexpr std::string_view kKey = "solid";
     glm::vec3 colour{1};  // linear light, 0..1
+    friend bool operator==(const SolidSource&, const SolidSource&) = default;
 };
 
 // Light through leaves (Ji et al. 2015, section 5).
@@ -37,11 +39,13 @@ struct FoliageSource {
         bool holes = false;                           // the pattern's shapes are holes in a dark canopy, not leaves
         double distance = 0;                          // metres from the leaves to the surface of their shadow
         std::optional<std::filesystem::path> filter;  // a picture of what one small hole projects; none: a disc
+        friend bool operator==(const Layer&, const Layer&) = default;
     };
     glm::dvec3 light{1.0}, shadow{0.0};  // linear light; `light` may exceed 1
     double height = 1;                   // of the canvas on the wall or ground, metres
     double sun = 0;                      // apparent diameter of the sun, radians
     std::vector<Layer> layers;
+    friend bool operator==(const FoliageSource&, const FoliageSource&) = default;
 };
 
 // Sunlight on the floor under wavy water: the waves focus and scatter it.
@@ -53,6 +57,7 @@ struct CausticsSource {
     double waveLength = 0.55;             // metres, on average
     double waveHeight = 0.02;             // metres, root mean square
     std::uint64_t seed = 1;
+    friend bool operator==(const CausticsSource&, const CausticsSource&) = default;
 };
 
 // The spots of a mirror ball that turns in a lamp's beam, on a wall. Places are metres from the
@@ -67,12 +72,14 @@ struct MirrorBallSource {
     glm::dvec3 lamp{2.6, 1.8, 1.0};  // outside the ball, in front of the wall
     double lampRadius = 0.03;        // metres
     double turn = 60;                // seconds for one turn; negative: the other way round
+    friend bool operator==(const MirrorBallSource&, const MirrorBallSource&) = default;
 };
 
 // A still picture.
 struct ImageSource {
     static constexpr std::string_view kKey = "image";
     std::filesystem::path file;
+    friend bool operator==(const ImageSource&, const ImageSource&) = default;
 };
 
 // A video, or a part of it. The numbers have the meaning of render::VideoSource's.
@@ -84,11 +91,13 @@ struct VideoSource {
     int times = 0;
     bool endsDark = false;
     double speed = 1;
+    friend bool operator==(const VideoSource&, const VideoSource&) = default;
 };
 
 // What the site's camera sees.
 struct CameraSource {
     static constexpr std::string_view kKey = "camera";
+    friend bool operator==(const CameraSource&, const CameraSource&) = default;
 };
 
 // Shadow theatre. The numbers have the meaning of render::ShadowSource's.
@@ -99,10 +108,12 @@ struct ShadowSource {
         double size = 0;
         glm::dvec3 light{1}, shadow{0};
         std::vector<glm::dvec3> actors;
+        friend bool operator==(const Lamp&, const Lamp&) = default;
     };
     enum class Play { Once, Loop, ToAndFro };
     struct Picture {
         glm::dvec2 x{0}, y{0};  // from, to; metres on the screen
+        friend bool operator==(const Picture&, const Picture&) = default;
     };
     std::filesystem::path cast;  // a *.cast.yaml
     int beam = 1;                // the beam of the cast's stage whose screen is seen
@@ -111,6 +122,7 @@ struct ShadowSource {
     std::optional<Play> play;  // none: Loop if the silhouette moves in a loop, else Once
     double speed = 1;
     std::optional<Picture> picture;  // the part of the screen that the canvas shows; none: the target's picture
+    friend bool operator==(const ShadowSource&, const ShadowSource&) = default;
 };
 
 using SourceKind = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource,

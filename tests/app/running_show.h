@@ -8,6 +8,7 @@
 
 #include "show/play/event.h"
 #include "show/play/input_log.h"
+#include "show/played_show.h"
 #include "show/show.h"
 #include "show/site/site.h"
 
@@ -15,6 +16,7 @@
 #include "core/clock.h"
 #include "source_folder.h"
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +42,7 @@ struct RunningShow {
     show::Site site = valueOf(show::readSite(sourceFolder() + "/config/simulated/site.yaml"));
     show::Show show = valueOf(show::Show::load(sourceFolder() + "/shows/light-movement"));
     show::CueList cues = valueOf(show.bind(site));
+    show::PlayedShow played{std::make_shared<const show::Revision>(show::Revision{show, site, cues, {}})};
     show::InputLog inputs{cues};
     show::EventLog events;
     FaultLog faults{events};

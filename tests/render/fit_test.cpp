@@ -85,7 +85,8 @@ protected:
                  [this] {
                      const auto file = folder_ / "disc.mp4";
                      writeVideo(file, {.size = {kPicture, kPicture}}, 3, [](int) { return discPicture(); });
-                     return PictureSource(VideoSource{valueOf(VideoStream::open(file, VideoStream::Pace::Exact))});
+                     return PictureSource(
+                         VideoSource{.stream = valueOf(VideoStream::open(file, VideoStream::Pace::Exact))});
                  }},
                 {"camera",
                  [] {

@@ -173,7 +173,7 @@ protected:
         const auto file = folder_ / fmt::format("{}-{}.mp4", rate, frames);
         writeVideo(file, {.size = kVideo, .rate = rate, .bFrames = 3, .keyEvery = 250}, frames,
                    [](int i) { return numbered(kVideo, i + 1); });
-        return {valueOf(VideoStream::open(file, pace))};
+        return {.stream = valueOf(VideoStream::open(file, pace))};
     }
     const ScratchFolder folder_;
 };
@@ -203,6 +203,16 @@ TEST_F(VideoOnAnOutput, holds_its_last_frame_where_it_does_not_loop_and_goes_at_
     EXPECT_EQ(shown(1, tickTime(4, 25)), 3);
     EXPECT_EQ(shown(1, tickTime(41, 25)), 21);
     EXPECT_EQ(shown(1, tickTime(42, 25)), 1);
+}
+
+TEST_F(VideoOnAnOutput, is_dark_after_its_end_where_it_is_asked_to) {
+    VideoSource once = video(25, 20);
+    once.times = 1;
+    once.endsDark = true;
+    DrawnOutput output(kVideo, rectangleCorners(kVideo.x, kVideo.y), {once});
+    EXPECT_EQ(numberOn(output.frame({{0, 1}}, tickTime(19, 25))), 20);
+    const RgbaImage over = output.frame({{0, 1}}, tickTime(20, 25));
+    EXPECT_TRUE(std::ranges::all_of(over.pixels(), [](const Rgba8& pixel) { return pixel == Rgba8{0, 0, 0}; }));
 }
 
 // In steady state the render thread only copies, at either pace, even if the picture changes every

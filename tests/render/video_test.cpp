@@ -23,6 +23,7 @@
 namespace fantascope::render {
 namespace {
 
+using namespace std::chrono_literals;
 using testing::HasSubstr;
 using Pace = VideoStream::Pace;
 
@@ -150,17 +151,53 @@ TEST_F(Videos, of_other_coders_are_right_too) {
 // rate.
 TEST_F(Videos, loop_without_a_gap) {
     const auto stream = open(make("a.mp4", {.rate = 30, .bFrames = 3, .keyEvery = 250}, 47));
-    const VideoSource source{stream};
+    const VideoSource source{.stream = stream};
     Seen seen(stream);
     for (std::int64_t refresh = 0; refresh < 47 * 5; ++refresh)
-        ASSERT_EQ(seen.at(positionAt(source, tickTime(refresh, 30))), refresh % 47 + 1) << refresh;
+        ASSERT_EQ(seen.at(*positionAt(source, tickTime(refresh, 30))), refresh % 47 + 1) << refresh;
     // At another rate than the video's, each frame is followed by itself or by the next one.
     int before = seen.at(Time{});
     for (std::int64_t refresh = 1; refresh < 400; ++refresh) {
-        const int now = seen.at(positionAt(source, tickTime(refresh, 50)));
+        const int now = seen.at(*positionAt(source, tickTime(refresh, 50)));
         ASSERT_TRUE(now == before || now == before % 47 + 1) << before << " " << now;
         before = now;
     }
+}
+
+// Example failures: the second time begins with the file's first frame; a part that ends dark shows
+// its last frame once more.
+TEST_F(Videos, play_a_part_as_often_as_asked) {
+    const auto stream = open(make("a.mp4", {.rate = 25, .bFrames = 3, .keyEvery = 250}, 47));
+    VideoSource source{.stream = stream, .from = tickTime(10, 25), .to = tickTime(20, 25), .times = 2, .endsDark = true};
+    Seen seen(stream);
+    for (std::int64_t refresh = 0; refresh < 20; ++refresh)
+        ASSERT_EQ(seen.at(*positionAt(source, tickTime(refresh, 25))), 11 + refresh % 10) << refresh;
+    EXPECT_EQ(positionAt(source, tickTime(20, 25)), std::nullopt);
+    EXPECT_EQ(seen.at(*positionAt(source, -1s)), 11) << "before it has begun";
+    source.endsDark = false;
+    EXPECT_EQ(seen.at(*positionAt(source, 9h)), 20);
+    source.times = 0;
+    EXPECT_EQ(seen.at(*positionAt(source, tickTime(1000, 25))), 11);
+    source.to = {};
+    EXPECT_EQ(seen.at(*positionAt(source, tickTime(36, 25))), 47) << "to its end";
+    EXPECT_EQ(seen.at(*positionAt(source, tickTime(37, 25))), 11);
+}
+
+// What the next cue needs is there before GO.
+// Example failure: a part in the middle begins with the first frame of the file, until the decoder
+// has come there.
+TEST_F(Videos, that_begin_in_the_middle_have_their_first_frames_ready) {
+    const auto file = make("a.mp4", {.rate = 25, .bFrames = 0, .keyEvery = 250}, 300);
+    const auto stream = valueOf(VideoStream::open(file, Pace::Exact, tickTime(250, 25)));
+    {
+        Seen early(stream);  // the opening is decoded by then
+        EXPECT_EQ(early.at(tickTime(253, 25)), 254);
+    }
+    Seen seen(stream);
+    EXPECT_EQ(seen.at(tickTime(250, 25)), 251);
+    const auto late = VideoStream::open(file, Pace::Exact, 12s);
+    ASSERT_FALSE(late);
+    EXPECT_EQ(folder_.relative(late.error().message()), "a.mp4: it is 12.000 s long, so it cannot begin at 12.000 s");
 }
 
 // Waits until the decoding thread has reached a frame, and collects the frames seen until then.

@@ -274,6 +274,11 @@ TEST(ShowFile, pictures_and_videos_are_files_and_a_camera_is_none) {
     EXPECT_EQ(std::get<VideoSource>(sources[3].picture).times, 1);
     EXPECT_EQ(std::get<VideoSource>(sources[3].picture).speed, 0.5);
     EXPECT_TRUE(std::holds_alternative<CameraSource>(sources[4].picture));
+    const Loaded part(replaced(std::string(kShow), solid,
+                               fmt::format("dim: {{video: {{file: {}, from: 2.5, to: 4, times: 3, at_end: dark}}}}", file)));
+    ASSERT_TRUE(part.show) << part.show.error().message();
+    EXPECT_EQ(std::get<VideoSource>(part.show->sources[1].picture),
+              (VideoSource{.file = part.folder / file, .from = 2500ms, .to = 4s, .times = 3, .endsDark = true}));
     for (const std::size_t named : {1u, 2u, 3u}) EXPECT_THAT(filesOf(sources[named]), ElementsAre(loaded.folder / file));
 
     const auto refused = [&](const std::string& source) { return refusalAfter("{solid: [0.1, 0.2, 0.3]}", source); };
@@ -281,6 +286,13 @@ TEST(ShowFile, pictures_and_videos_are_files_and_a_camera_is_none) {
     EXPECT_THAT(refused("{video: no.mp4}"), HasSubstr("video: there is no file no.mp4; it is a video"));
     EXPECT_THAT(refused("{video: {loop: true}}"), HasSubstr("'file' is missing"));
     EXPECT_THAT(refused("{video: {file: patterns/leaves.pattern.yaml, speed: 0}}"), HasSubstr("speed: "));
+    const auto refusedVideo = [&](const std::string& keys) {
+        return refused("{video: {file: patterns/leaves.pattern.yaml, " + keys + "}}");
+    };
+    EXPECT_THAT(refusedVideo("from: 3, to: 3"), HasSubstr("'to' comes after 'from'"));
+    EXPECT_THAT(refusedVideo("loop: true, times: 2"), HasSubstr("give one of 'loop' and 'times'"));
+    EXPECT_THAT(refusedVideo("at_end: dark"), HasSubstr("this video has no end; add 'times', or remove 'at_end'"));
+    EXPECT_THAT(refusedVideo("times: 0"), HasSubstr("times"));
     EXPECT_THAT(refused("{camera: {size: 3}}"), HasSubstr("unknown key"));
     EXPECT_THAT(refused("{camera: {}, image: patterns/leaves.pattern.yaml}"), HasSubstr("exactly one kind of source"));
 }

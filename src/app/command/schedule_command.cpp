@@ -39,7 +39,7 @@ Result<void> schedule(const Options& options) {
     const Time now = SystemWallClock().now().utc;
     const show::Date first = options.from.empty() ? nights.nightAt(now) : TRY(show::dateOf(options.from).in("--from"));
     const Season season{revision->show, nights, first, options.days};
-    fmt::print("{}\n{}\n", tableOf(season), nextDayOf(nights, revision->show, now));
+    fmt::print("{}\n{}\n", tableOf(season), nextDayOf(*revision, now));
     if (!options.report.empty()) TRY(writeReport(options.report, jsonOf(season)));
     return {};
 }

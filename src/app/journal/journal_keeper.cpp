@@ -13,7 +13,7 @@ constexpr Time kClockIsSet = std::chrono::seconds(1);  // a smaller difference i
 
 }  // namespace
 
-JournalKeeper::JournalKeeper(NightJournal* journal, const show::Show& show, show::InputLog& inputs, show::EventLog& events)
+JournalKeeper::JournalKeeper(NightJournal* journal, const show::PlayedShow& show, show::InputLog& inputs, show::EventLog& events)
     : journal_(journal), show_(show), inputs_(inputs), events_(events), replica_(inputs) {}
 
 Time JournalKeeper::resume(bool timePasses) {
@@ -39,7 +39,7 @@ bool JournalKeeper::start() {
                                        .utc = journal_->utc(),
                                        .goesOn = goesOn,
                                        .list = show::hashOf(*inputs_.cues()),
-                                       .show = show_.file.string()});
+                                       .show = show_.at(0).show.file.string()});
     // The journal's own lines lead to where the show goes on, or else the inputs of the resumption.
     show::InputLog::Reader reader = inputs_.reader();
     while (const show::LoggedInput* const logged = reader.next())
@@ -49,7 +49,7 @@ bool JournalKeeper::start() {
     });
     if (!resumed_) return false;
     const auto cue = cueOn();
-    events_.append({resumed_->at, show::event::ShowResumed{.cue = cue ? show_.cues[*cue].name : "",
+    events_.append({resumed_->at, show::event::ShowResumed{.cue = cue ? show_.at(0).show.cues[*cue].name : "",
                                                            .isExact = resumed_->isExact,
                                                            .damaged = journal_->earlier()->journal.damaged}});
     return true;
@@ -74,7 +74,8 @@ void JournalKeeper::tick(const show::journal::Figures& now) {
     state.controls.next = std::nullopt;
     for (show::ListPlace& side : state.controls.sides) side.next = std::nullopt;
     if (state.controls.cue != written_.controls.cue)
-        state.cue = state.controls.cue < 0 ? "" : show_.cues[static_cast<std::size_t>(state.controls.cue)].name;
+        state.cue =
+            state.controls.cue < 0 ? "" : show_.at(state_.revision).show.cues[static_cast<std::size_t>(state.controls.cue)].name;
     if (state != written_ || showTime - written_.at >= kStateEvery) {
         state.at = showTime;
         written_ = std::move(state);

@@ -6,7 +6,7 @@
 #include "show/play/input_log.h"
 #include "show/play/playback_replica.h"
 #include "show/play/resumption.h"
-#include "show/show.h"
+#include "show/played_show.h"
 
 #include "core/clock.h"
 
@@ -23,7 +23,7 @@ namespace fantascope::app {
 class JournalKeeper {
 public:
     // All arguments outlive this. `journal`: null if nobody wants one. `inputs` has no input yet.
-    JournalKeeper(NightJournal* journal, const show::Show& show, show::InputLog& inputs, show::EventLog& events);
+    JournalKeeper(NightJournal* journal, const show::PlayedShow& show, show::InputLog& inputs, show::EventLog& events);
 
     // Submits what an earlier run has left. Returns the show time at which this one starts.
     // `timePasses`: the show went on while no run was there.
@@ -45,7 +45,7 @@ public:
 
 private:
     NightJournal* const journal_;
-    const show::Show& show_;
+    const show::PlayedShow& show_;
     show::InputLog& inputs_;
     show::EventLog& events_;
     show::EventLog::Reader told_ = events_.reader();

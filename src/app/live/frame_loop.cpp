@@ -26,7 +26,7 @@ std::optional<Homography> movementOf(const show::PictureShift& shift, const Proj
 FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources,
                      std::filesystem::path assets, Devices& devices, Clock& clock,
                      const std::vector<std::shared_ptr<const GreyImage>>& gains)
-    : sources_(std::move(sources)),
+    : stock_(std::move(sources)),
       assets_(std::move(assets)),
       clock_(clock),
       replica_(inputs),
@@ -148,32 +148,15 @@ FrameLoop::Output* FrameLoop::leader() {
     return first == outputs_.end() ? nullptr : &*first;
 }
 
-void FrameLoop::makeReady(show::SourceId source, int number, const render::PatternSource& pattern) {
-    std::erase_if(made_, [&](const Exchange& each) {
-        return each.source == source && (each.number < number - 1 || each.number >= number);
-    });
-    made_.push_back({source, number, pattern});
-    exchanges_.writable() = made_;
-    exchanges_.publish();
-}
-
-void FrameLoop::takeExchanges(Output& output) {
-    if (output.exchanges == version_ || std::exchange(hasTaken_, true)) return;
-    output.exchanges = version_;
-    for (const Exchange& each : exchanges_.value())
-        if (const auto made = output.renderer->exchange(each.source, each.number, each.pattern); !made)
-            tell(unfollowed_, output, "its new pattern cannot be drawn: " + made.error().message());
-}
-
 Result<void> FrameLoop::makeRenderer(Output& output, const Projection& projection,
                                      const std::shared_ptr<const render::BlendMap>& blend) {
     const render::OutputRenderer::Options options{
         .projection = projection, .blend = blend, .shaders = assets_ / "shaders", .clock = &clock_, .gain = output.gain};
-    auto renderer = TRY(render::OutputRenderer::create(options, sources_));
+    auto renderer = TRY(render::OutputRenderer::create(options, *output.sources.all));
     TRY(renderer->warmUp(output.display.framebuffer()));
     renderer->draw({}, Wind{}, Time{}, output.display.framebuffer());
     output.renderer = std::move(renderer);
-    output.exchanges = 0;
+    output.sources.exchanges = 0;
     output.bends = projection.warp.bends();
     return {};
 }
@@ -225,6 +208,7 @@ bool FrameLoop::isHere(Output& output) {
 
 bool FrameLoop::ready(Output& output, Time now) {
     if (output.faulted && now < output.retryAt) return false;
+    if (!output.renderer) output.sources.all = stock_.all();
     if (output.renderer || !makesAside_) return settle(output, attempt(output));
     makeAside(output);
     return false;
@@ -294,7 +278,8 @@ void FrameLoop::draw(std::size_t number, Time showTime) {
     const Time began = clock_.now();
     if (!ready(output, began)) return;
     followSettings(output, state_.shifts[number]);
-    takeExchanges(output);
+    if (const auto taken = stock_.giveTo(*output.renderer, output.sources); !taken)
+        tell(unfollowed_, output, "what is new cannot be drawn: " + taken.error().message());
     output.renderer->correctLight(lightShare_);
     output.renderer->draw(state_.outputs[number], state_.winds[number], state_.cueTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
@@ -420,11 +405,11 @@ void FrameLoop::step() {
     hangsFrom_ = (due + kHangs).count();
     const Time showTime = showClock_.showTime(due);
     lightShare_ = static_cast<float>(std::clamp(seconds(showClock_.runTime(due)) / seconds(kLightFade), 0.0, 1.0));
-    hasTaken_ = false;
-    if (exchanges_.update()) ++version_;
     oldestInput_ = Time::max();
+    stock_.beginFrame(replica_.playback(), showTime);
     drawAll(showTime);
     if (awaitInput(due)) drawAll(showTime);
+    stock_.endFrame();
 
     // The leader waits for its refresh; the others show their frames with it.
     const auto showOn = [&](Output& output, const Presenting& present) { alone(output, [&] { show(output, present); }); };

@@ -2,6 +2,7 @@
 
 #include "app/live/held_frame.h"
 #include "app/live/run_report.h"
+#include "app/reload/source_stock.h"
 #include "app/site/devices.h"
 
 #include "render/frame_tap.h"
@@ -75,9 +76,8 @@ public:
     // the next frame.
     LatestValue<std::shared_ptr<const OutputSettings>>& settingsOf(std::size_t output) { return *outputs_[output].settings; }
 
-    // Makes the renderers ready to draw an exchange of a source's pattern, within some frames: one
-    // output a frame. The two newest exchanges of a source are kept. Call it from one other thread.
-    void makeReady(show::SourceId source, int number, const render::PatternSource& pattern);
+    // What can be drawn. The renderers follow it, one source a frame.
+    SourceStock& sources() { return stock_; }
 
     // Makes the renderers, and draws every source once, so that nothing is compiled while people
     // watch. A display without a context gets its renderer together with its context. Error: no
@@ -137,7 +137,7 @@ private:
         int context = 0;                                     // the display's context that renderer and tap belong to
         show::PictureShift shift{};                          // of the warp that the renderer has
         bool fresh = false;                                  // the renderer has only the site file's settings
-        int exchanges = 0;                                   // it has the exchanges of this version
+        SourceStock::Taken sources{};                        // what it can draw
         bool faulted = false;                                // the last attempt failed
         Time retryAt{}, pause{};                             // when the next attempt is due; the back-off
         bool bends = false;                                  // the renderer was made for a mesh
@@ -172,7 +172,6 @@ private:
     bool becomesCurrent(Output& output) noexcept;
     void forget(Output& output);
     void inHand(const Output& output);
-    void takeExchanges(Output& output);
     void followSettings(Output& output, const show::PictureShift& shift);
     void draw(std::size_t output, Time showTime);
     void drawAll(Time showTime);
@@ -187,7 +186,7 @@ private:
     void spend(Output& output, FramePart part, Time time);
     void countLate(Output& output, std::int64_t refreshes);
 
-    render::PictureSources sources_;
+    SourceStock stock_;
     std::filesystem::path assets_;
     Clock& clock_;
     show::ShowClock showClock_;
@@ -200,16 +199,6 @@ private:
     show::PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<Output> outputs_;
-    // An exchange of a source's pattern.
-    struct Exchange {
-        show::SourceId source;
-        int number;
-        render::PatternSource pattern;
-    };
-    LatestValue<std::vector<Exchange>> exchanges_;
-    std::vector<Exchange> made_;  // what was last written there; belongs to the thread that calls makeReady()
-    int version_ = 0;             // of what was last read there
-    bool hasTaken_ = false;       // an output has taken exchanges in the frame that is being made
     LatestValue<show::ShowState>* stateSlot_ = nullptr;
     bool makesAside_ = false;
     PartTimes spent_{};  // on all frames of all outputs

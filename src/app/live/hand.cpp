@@ -20,14 +20,14 @@ static_assert(kWords.size() == static_cast<std::size_t>(show::Button::Write) + 1
 
 }  // namespace
 
-Hand::Hand(const show::Show& show, show::InputLog& inputs, const show::Site& site, Devices& devices,
+Hand::Hand(const show::PlayedShow& show, show::InputLog& inputs, const show::Site& site, Devices& devices,
            const show::ShowClock& showClock, show::EventLog& events)
     : show_(show),
       site_(site),
       devices_(devices),
       showClock_(showClock),
       events_(events),
-      sides_(show::namesOf(show.sides)),
+      sides_(show::namesOf(show.at(0).show.sides)),
       buttons_(site.buttons, sides_),
       inputs_(inputs),
       replica_(inputs),
@@ -79,7 +79,7 @@ void Hand::tell(Time showTime) {
 
 // What has changed in a list.
 void Hand::tellCues(Time showTime, const show::ListPlace& told, const show::ListPlace& now, int list) {
-    const std::vector<show::Cue>& cues = show_.cuesOf(list);
+    const std::vector<show::Cue>& cues = show_.at(state_.revision).show.cuesOf(list);
     // News of a cue by its number; -1: of none.
     const auto named = [&](auto news, int cue) {
         if (list > 0) news.list = sides_[static_cast<std::size_t>(list) - 1];

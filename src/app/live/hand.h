@@ -7,7 +7,7 @@
 #include "show/play/event.h"
 #include "show/play/playback_replica.h"
 #include "show/play/show_clock.h"
-#include "show/show.h"
+#include "show/played_show.h"
 
 #include <functional>
 #include <optional>
@@ -23,7 +23,7 @@ class Hand {
 public:
     // All arguments by reference outlive this, except `showClock`. `devices` may lack the hand
     // controller or contacts.
-    Hand(const show::Show& show, show::InputLog& inputs, const show::Site& site, Devices& devices,
+    Hand(const show::PlayedShow& show, show::InputLog& inputs, const show::Site& site, Devices& devices,
          const show::ShowClock& showClock, show::EventLog& events);
 
     // Hz; the poll rate of both. A press waits at most 5 ms.
@@ -41,7 +41,7 @@ private:
     void tell(Time showTime);
     void tellCues(Time showTime, const show::ListPlace& told, const show::ListPlace& now, int list);
 
-    const show::Show& show_;
+    const show::PlayedShow& show_;
     const show::Site& site_;
     Devices& devices_;
     const show::ShowClock showClock_;

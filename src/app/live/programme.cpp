@@ -384,9 +384,11 @@ Result<std::optional<Time>> wallFrom(const RunOptions& options, const Programme&
 }
 
 Result<Programme> readProgramme(const RunOptions& options) {
-    show::Show show = TRY(show::Show::load(options.show));
+    show::SourceNames names;
+    show::Show show = TRY(show::Show::load(options.show, names));
     show::Site site = TRY(readSite(options.site));
     Programme programme(TRY(show::Revision::of(std::move(show), std::move(site))));
+    programme.names = std::move(names);
     std::optional<std::size_t> first = programme.show.start;
     if (!options.fromCue.empty()) first = TRY(programme.show.cueNamed(options.fromCue));
     if (first) programme.firstInput = show::Input{Time{}, show::Input::Kind::Jump, static_cast<int>(*first)};

@@ -24,6 +24,12 @@
 
 namespace fantascope::app {
 
+// Reads the files of a show's source, so that it is ready to be drawn. `camera`: the pictures of a
+// camera source; null if the site has no camera. Error: the place of the source, and the place of
+// the fault in its files.
+Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
+                                                const std::shared_ptr<render::PictureFeed>& camera);
+
 // Everything that a run reads from files before it shows anything. It is constant afterwards,
 // except for the decoding of videos and for camera pictures.
 struct Programme {
@@ -39,6 +45,11 @@ struct Programme {
     std::optional<show::Input> firstInput;  // the cue to start with: that of --from, or the show's own
     std::optional<std::size_t> firstCue() const {
         return firstInput ? std::optional(static_cast<std::size_t>(firstInput->cue)) : std::nullopt;
+    }
+    show::SourceNames names;  // by which the show was read
+    // Reads another source's files for the same run.
+    Result<render::PictureSource> read(const show::Source& source) const {
+        return readPictureSource(source, render::VideoStream::Pace::Live, camera);
     }
     render::PictureSources sources;               // in the order of Show::sources
     std::shared_ptr<render::PictureFeed> camera;  // the pictures of camera sources; null if the site has no camera
@@ -67,12 +78,6 @@ Result<std::optional<vision::GuideComparison>> comparisonWith(const Guide& guide
 
 // Reads a pattern with its movement, ready to be drawn. Error: as pattern::readPattern.
 Result<render::PatternSource> readPatternSource(const std::filesystem::path& file);
-
-// Reads the files of a show's source, so that it is ready to be drawn. `camera`: the pictures of a
-// camera source; null if the site has no camera. Error: the place of the source, and the place of
-// the fault in its files.
-Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
-                                                const std::shared_ptr<render::PictureFeed>& camera);
 
 // Adds the videos' late and damaged frames.
 void addVideos(const Programme& programme, RunReport& report);

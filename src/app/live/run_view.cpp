@@ -9,7 +9,8 @@ namespace fantascope::app {
 RunStatus RunView::at(Time moment, Time nextGo, int list) {
     const Time time = showClock_.showTime(moment), runTime = showClock_.runTime(moment);
     replica_.stateAt(time, state_);
-    const auto& cues = show_.cues;
+    const show::Show& show = show_.at(state_.revision).show;
+    const auto& cues = show.cues;
     RunStatus status;
     status.showTime = time;
     status.cues = static_cast<int>(cues.size());
@@ -32,7 +33,7 @@ RunStatus RunView::at(Time moment, Time nextGo, int list) {
     if (follower && after && follower != after) status.loadedName = cues[static_cast<std::size_t>(*after)].name;  // GO's
     if (state_.loaded >= 0) status.loadedName = cues[static_cast<std::size_t>(state_.loaded)].name;
     for (std::size_t side = 0; side < state_.sides.size(); ++side) {
-        const show::SideList& sideList = show_.sides[side];
+        const show::SideList& sideList = show.sides[side];
         const int which = static_cast<int>(side) + 1;
         RunStatus::Side& told = status.sides.emplace_back(RunStatus::Side{.name = sideList.name, .hasKeys = which == list});
         if (const int cue = state_.sides[side].cue; cue >= 0) told.cueName = sideList.cues[static_cast<std::size_t>(cue)].name;

@@ -6,7 +6,7 @@
 #include "show/play/input_log.h"
 #include "show/play/playback_replica.h"
 #include "show/play/show_clock.h"
-#include "show/show.h"
+#include "show/played_show.h"
 
 #include "core/clock.h"
 
@@ -22,8 +22,8 @@ class RunView {
 public:
     // All arguments by reference outlive this, except `showClock`. `length`: of the run, in run
     // time; none: the run goes on until somebody ends it.
-    RunView(const show::Show& show, const show::InputLog& inputs, const show::EventLog& events, const show::ShowClock& showClock,
-            std::optional<Time> length)
+    RunView(const show::PlayedShow& show, const show::InputLog& inputs, const show::EventLog& events,
+            const show::ShowClock& showClock, std::optional<Time> length)
         : show_(show), showClock_(showClock), length_(length), replica_(inputs), events_(events.reader()) {}
 
     // The status at `moment`. `nextGo`: run time of the schedule's next GO; Time::max() if there is
@@ -33,7 +33,7 @@ public:
     bool hasNews();
 
 private:
-    const show::Show& show_;
+    const show::PlayedShow& show_;
     const show::ShowClock showClock_;
     const std::optional<Time> length_;
     show::PlaybackReplica replica_;

@@ -30,7 +30,7 @@ std::string inFileName(std::string text) {
 
 }  // namespace
 
-Screenshots::Screenshots(std::filesystem::path folder, const show::Show& show, const show::InputLog& inputs,
+Screenshots::Screenshots(std::filesystem::path folder, const show::PlayedShow& show, const show::InputLog& inputs,
                          const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames,
                          const show::ShowClock& showClock, show::EventLog& events)
     : folder_(std::move(folder)), show_(show), showClock_(showClock), events_(events), replica_(inputs) {
@@ -68,9 +68,10 @@ void Screenshots::tick(Time moment) {
 
 Result<std::filesystem::path> Screenshots::write(const std::string& output, const render::ShownFrame& frame) {
     replica_.stateAt(frame.showTime, state_);
+    const std::vector<show::Cue>& cues = show_.at(state_.revision).show.cues;
     const std::string cue =
         state_.cue < 0 ? "before-the-first-cue"
-                       : fmt::format("{}-{}", state_.cue + 1, inFileName(show_.cues[static_cast<std::size_t>(state_.cue)].name));
+                       : fmt::format("{}-{}", state_.cue + 1, inFileName(cues[static_cast<std::size_t>(state_.cue)].name));
     const std::string name = fmt::format("{:09.3f}s-{}-{}", seconds(frame.showTime), cue, output);
     // Existing pictures, such as those of another night, are not overwritten.
     std::error_code unknown;  // ignored: an error will show when the file is written

@@ -4,7 +4,7 @@
 #include "show/play/event.h"
 #include "show/play/playback_replica.h"
 #include "show/play/show_clock.h"
-#include "show/show.h"
+#include "show/played_show.h"
 
 #include "core/clock.h"
 #include "core/result.h"
@@ -25,7 +25,7 @@ public:
     // All arguments by reference outlive this, except `showClock`. `frames`: a reader for each
     // output, which reads only frames that are asked for. The folder is created with the first
     // picture. Events report each picture's file, or why there is no picture.
-    Screenshots(std::filesystem::path folder, const show::Show& show, const show::InputLog& inputs,
+    Screenshots(std::filesystem::path folder, const show::PlayedShow& show, const show::InputLog& inputs,
                 const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames,
                 const show::ShowClock& showClock, show::EventLog& events);
 
@@ -45,7 +45,7 @@ private:
     Result<std::filesystem::path> write(const std::string& output, const render::ShownFrame& frame);
 
     const std::filesystem::path folder_;
-    const show::Show& show_;
+    const show::PlayedShow& show_;
     const show::ShowClock showClock_;
     show::EventLog& events_;
     show::PlaybackReplica replica_;  // finds the cue of a frame

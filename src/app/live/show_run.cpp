@@ -20,12 +20,15 @@
 #include "app/live/supervisor.h"
 #include "app/live/watch.h"
 #include "app/live/yardstick.h"
+#include "app/reload/show_reload.h"
 #include "app/schedule/outlook.h"
 #include "app/schedule/show_caller.h"
 #include "app/site/open_site.h"
 #include "app/site/relay_guard.h"
 #include "app/site/site_claims.h"
+#include "app/site/site_models.h"
 
+#include "show/names.h"
 #include "show/play/event.h"
 #include "show/play/show_clock.h"
 
@@ -47,12 +50,6 @@ constexpr double kSiteRate = 120;                          // Hz; a camera frame
 constexpr double kProgressRate = 2;                        // Hz
 constexpr Time kStartUp = std::chrono::milliseconds(100);  // for making the parts and starting their threads
 
-std::vector<std::string> namesOf(const auto& named) {
-    std::vector<std::string> names;
-    for (const auto& one : named) names.push_back(one.name);
-    return names;
-}
-
 // A running show: its parts, and what they pass to each other. lightParts() and otherParts() list
 // the parts.
 class ShowRun {
@@ -68,8 +65,9 @@ public:
           supervisor_(supervisor),
           wall_(wall),
           faults_(events_),
+          played_(programme.revision),
           inputs_(programme.cues),
-          journal_(journal, programme.show, inputs_, events_),
+          journal_(journal, played_, inputs_, events_),
           frames_(programme.site, inputs_, programme.sources, assets, openSite.devices, clock,
                   gainsToApply(programme.site, programme.light)),
           terminal_(options.asFastAsPossible ? nullptr : std::make_unique<TerminalKeys>()),
@@ -83,16 +81,18 @@ public:
           pictured_(readers(attended_, [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           prepared_(frames_.prepare()),
           showClock_(frames_.refreshFrom(clock.now() + kStartUp), journal_.resume(programme.nights() != nullptr)),
-          deviceWatch_(faults_, namesOf(programme.site.relayBanks), showClock_.runStart()),
+          deviceWatch_(faults_, show::namesOf(programme.site.relayBanks), showClock_.runStart()),
           lighting_(programme.site, inputs_, openSite.devices, clock, showClock_, recording, faults_, events_),
-          caller_(programme.nights(), programme.show, inputs_, events_, wall, showClock_),
-          hand_(programme.show, inputs_, programme.site, openSite.devices, showClock_, events_),
-          watch_(programme.show, namesOf(programme.site.outputs), programme.comparisons, openSite.devices.camera.get(),
+          caller_(played_, inputs_, events_, wall, showClock_),
+          hand_(played_, inputs_, programme.site, openSite.devices, showClock_, events_),
+          watch_(played_, show::namesOf(programme.site.outputs), programme.comparisons, openSite.devices.camera.get(),
                  programme.camera.get(), showClock_, recording),
           settingUp_(programme.site, frames_, openSite.devices, showClock_, events_),
           keys_(inputs_, events_, showClock_, std::move(terminal_), schedule(), QuitKey(options.backends == Backends::AsDeclared),
                 keyActions()),
-          view_(programme.show, inputs_, events_, showClock_, options.length),
+          view_(played_, inputs_, events_, showClock_, options.length),
+          reload_(played_, programme.names, std::bind_front(&Programme::read, &programme), frames_.sources(), inputs_, events_,
+                  showClock_),
           yardstick_(programme.site.outputs[0].refreshRate, showClock_.runStart()),
           lights_(programme.site, openSite.devices, lighting_, faults_, clock, guard) {
         faults_.begin(showClock_);
@@ -107,13 +107,13 @@ public:
                                                  inputs_, events_, showClock_),
                              [this] { return settingUp_.on(); });
             driftWatch_->fitPatterns(programme.patterns, options.asFastAsPossible,
-                                     std::bind_front(&FrameLoop::makeReady, &frames_));
+                                     std::bind_front(&SourceStock::makeReady, &frames_.sources()));
         }
         hand_.edit = [this](show::Button button, bool pressed) { settingUp_.button(button, pressed); };
         hand_.editing = [this] { return settingUp_.on(); };
         if (!pictured_.empty())
-            screenshots_.emplace(options.pictures, programme.show, inputs_, namesOf(programme.site.outputs), pictured_,
-                                 showClock_, events_);
+            screenshots_.emplace(options.pictures, played_, inputs_, show::namesOf(programme.site.outputs), pictured_, showClock_,
+                                 events_);
         const bool goesOn = journal_.start();
         if (!goesOn && programme.firstInput) inputs_.submit(*programme.firstInput);
         caller_.begin(goesOn ? journal_.endedBefore() : programme.firstInput ? std::optional(wall.now().utc) : std::nullopt);
@@ -152,10 +152,14 @@ public:
         if (screenshots_)
             parts.push_back(
                 {"pictures", Screenshots::kRate, start, [this](Time moment) { screenshots_->tick(moment); }, Rank::Watch});
-        parts.push_back({"devices", DeviceWatch::kRate, start, [this](Time moment) { watchDevices(moment); }, Rank::Input});
+        const auto watchDevices = [this](Time moment) {
+            lights_.whileOpen([&] { deviceWatch_.look(moment, frames_.withFaults(openSite_.devices.statuses())); });
+        };
+        parts.push_back({"devices", DeviceWatch::kRate, start, watchDevices, Rank::Input});
         parts.push_back(
             {"progress", kProgressRate, start, [this, progress](Time moment) { progress(statusAt(moment)); }, Rank::Input});
         if (!options_.asFastAsPossible) {
+            parts.push_back({"files", ShowReload::kRate, start, [this](Time moment) { reload_.tick(moment); }, Rank::Watch});
             parts.push_back({"setting up", SettingUp::kRate, start,
                              [this](Time moment) {
                                  settingUp_.tick(moment, [this](const Key& key, Time at) { keys_.pressedAtScreen(key, at); });
@@ -330,10 +334,6 @@ private:
                 Rank::Watch};
     }
 
-    void watchDevices(Time moment) {
-        lights_.whileOpen([&] { deviceWatch_.look(moment, frames_.withFaults(openSite_.devices.statuses())); });
-    }
-
     RunStatus statusAt(Time moment) {
         RunStatus status = view_.at(moment, keys_.nextGo(), keys_.list());
         status.settingUp = settingUp_.on();
@@ -357,6 +357,7 @@ private:
     const WallClock& wall_;
     show::EventLog events_;
     FaultLog faults_;
+    show::PlayedShow played_;
     show::InputLog inputs_;
     JournalKeeper journal_;
     FrameLoop frames_;
@@ -372,7 +373,7 @@ private:
     DeviceWatch deviceWatch_;          // belongs to the devices part
     Lighting lighting_;
     ShowCaller caller_;
-    Outlook outlook_{programme_.nights(), programme_.show};  // belongs to the progress part
+    Outlook outlook_{played_};  // belongs to the progress part
     Hand hand_;
     Watch watch_;
     std::optional<DriftWatch> driftWatch_;
@@ -383,6 +384,7 @@ private:
     Time length_{};
     bool guardIsAway_ = false;  // belongs to the supervisor's thread
     std::int64_t framesBefore_ = 0;
+    ShowReload reload_;
     Yardstick yardstick_;
     RunLights lights_;  // last, so that its threads end before the other members are destroyed
 };

@@ -6,8 +6,8 @@
 
 namespace fantascope::app {
 
-Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
-             render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording)
+Watch::Watch(const show::PlayedShow& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons,
+             CameraSource* camera, render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording)
     : show_(show),
       outputs_(std::move(outputs)),
       comparisons_(std::move(comparisons)),
@@ -65,14 +65,15 @@ void Watch::see(const std::shared_ptr<const CameraFrame>& frame) {
     if (pictures_ != nullptr) pictures_->publish({frame, &frame->image});
     const Time showTime = showClock_.showTime(frame->exposed);
     for (std::size_t output = 0; output < outputs_.size(); ++output) score(output, *frame, showTime);
-    keepForCue(shown_.value().cue, frame, showTime);
+    keepForCue(frame, showTime);
 }
 
-void Watch::keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time showTime) {
+void Watch::keepForCue(std::shared_ptr<const CameraFrame> frame, Time showTime) {
+    const int cue = shown_.value().cue;
     // Fixtures and relays may be a moment ahead of the pictures, so a cue's last camera frame may
     // already show the next cue. Therefore the frame before it is kept.
     if (recording_ != nullptr && last_.frame && cue >= 0 && cue == last_.cue) {
-        const std::string& name = show_.cues[static_cast<std::size_t>(cue)].name;
+        const std::string& name = show_.at(shown_.value().revision).show.cues[static_cast<std::size_t>(cue)].name;
         recording_->cue(cue, fmt::format("{} {}  ({:.1f} s)", cue + 1, name, seconds(last_.showTime)), last_.frame->image);
     }
     last_ = {cue, std::move(frame), showTime};

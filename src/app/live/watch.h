@@ -6,7 +6,7 @@
 #include "render/source/picture_feed.h"
 #include "render/source/picture_source.h"
 #include "show/play/show_clock.h"
-#include "show/show.h"
+#include "show/played_show.h"
 #include "theatre/motion/wanted_shadow.h"
 #include "vision/compare/guide_comparison.h"
 #include "vision/compare/shadow_comparison.h"
@@ -47,8 +47,8 @@ public:
     // All arguments by reference or pointer outlive this, except `showClock`. `camera`, `pictures`
     // and `recording` may be null. `comparisons`: by output. The camera's pictures are passed on to
     // `pictures`.
-    Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
-          render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording);
+    Watch(const show::PlayedShow& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons,
+          CameraSource* camera, render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording);
 
     // Also watches where the pictures stand. `drifts` outlives this. `isSettingUp`: whether a
     // technician moves them now; thread-safe.
@@ -80,9 +80,9 @@ private:
     void see(const std::shared_ptr<const CameraFrame>& frame);
     const show::LayerState* comparedLayer(std::size_t output) const;
     void score(std::size_t output, const CameraFrame& frame, Time showTime);
-    void keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time showTime);
+    void keepForCue(std::shared_ptr<const CameraFrame> frame, Time showTime);
 
-    const show::Show& show_;
+    const show::PlayedShow& show_;
     std::vector<std::string> outputs_;
     std::vector<Comparisons> comparisons_;
     CameraSource* camera_;

@@ -3,7 +3,8 @@
 #include "app/schedule/outlook.h"
 
 #include <chrono>
-#include <utility>
+#include <cstddef>
+#include <string>
 
 namespace fantascope::app {
 
@@ -19,31 +20,43 @@ constexpr Time kClockIsSet = std::chrono::seconds(2);  // a smaller difference i
 
 }  // namespace
 
-ShowCaller::ShowCaller(const Nights* nights, const show::Show& show, show::InputLog& inputs, show::EventLog& events,
-                       const WallClock& wall, const show::ShowClock& showClock)
-    : nights_(nights), show_(show), inputs_(inputs), events_(events), wall_(wall), showClock_(showClock), replica_(inputs) {}
+ShowCaller::ShowCaller(const show::PlayedShow& show, show::InputLog& inputs, show::EventLog& events, const WallClock& wall,
+                       const show::ShowClock& showClock)
+    : show_(show),
+      revision_(&show.newest()),
+      inputs_(inputs),
+      events_(events),
+      wall_(wall),
+      showClock_(showClock),
+      replica_(inputs) {}
 
 void ShowCaller::begin(std::optional<Time> followed) {
-    if (nights_ == nullptr) return;
-    if (followed) called_ = nights_->at(*followed);
+    if (!revision_->nights) return;
+    if (followed) called_ = revision_->nights->at(*followed);
     events_.append({showClock_.showTime(showClock_.runStart()), show::event::NextDayTold{nextDay()}});
     tick(showClock_.runStart());
 }
 
-std::string ShowCaller::nextDay() const { return nights_ == nullptr ? "" : nextDayOf(*nights_, show_, wall_.now().utc); }
+std::string ShowCaller::nextDay() const {
+    const show::Revision& revision = show_.newest();
+    return revision.nights ? nextDayOf(revision, wall_.now().utc) : "";
+}
 
 void ShowCaller::tick(Time moment) {
-    if (nights_ == nullptr) return;
+    const auto still = show_.still();
     const Time utc = wall_.now().utc, showTime = showClock_.showTime(moment);
+    if (const show::Revision& newest = show_.newest(); &newest != revision_) follow(newest, utc);
+    if (!revision_->nights) return;
+    const Nights& nights = *revision_->nights;
     tellOfClock(utc, moment);
-    if (!stretch_ || utc < stretch_->begin.utc || utc >= stretch_->end) stretch_ = nights_->stretchAt(utc);
+    if (!stretch_ || utc < stretch_->begin.utc || utc >= stretch_->end) stretch_ = nights.stretchAt(utc);
     const Nights::Moment& due = stretch_->begin;
     if (isCalled(due, utc)) return;
     replica_.stateAt(showTime, state_);
     if (state_.panic) return;
     const Time ago = utc - due.utc;
     if (due.cue >= 0 || state_.cue >= 0) {
-        events_.append({showTime, show::event::ScheduleCalled{.what = wordsOf(due, *nights_, show_), .joins = ago > kLate}});
+        events_.append({showTime, show::event::ScheduleCalled{.what = wordsOf(due, *revision_), .joins = ago > kLate}});
         inputs_.submit({.at = showTime,
                         .kind = show::Input::Kind::Jump,
                         .cue = due.cue,
@@ -51,6 +64,19 @@ void ShowCaller::tick(Time moment) {
                         .ago = due.cue >= 0 && ago > kLate ? ago : Time{}});
     }
     called_ = due;
+}
+
+// The show was revised.
+void ShowCaller::follow(const show::Revision& revision, Time utc) {
+    const auto nameOf = [](const Nights::Moment& moment, const show::Revision& of) {
+        return moment.cue < 0 ? std::string() : of.show.cues[static_cast<std::size_t>(moment.cue)].name;
+    };
+    if (called_ && revision.nights) {
+        const Nights::Moment due = revision.nights->at(utc);
+        if (nameOf(due, revision) == nameOf(*called_, *revision_)) called_ = due;
+    }
+    stretch_.reset();
+    revision_ = &revision;
 }
 
 bool ShowCaller::isCalled(const Nights::Moment& due, Time utc) const {
@@ -64,7 +90,7 @@ void ShowCaller::tellOfClock(Time utc, Time moment) {
     const Time began = utc - showClock_.showTime(moment);
     if (const Time before = began_.value_or(began); std::chrono::abs(began - before) > kClockIsSet)
         events_.append({showClock_.showTime(moment),
-                        show::event::ClockSet{.now = dayAndClockOf(nights_->zone().at(utc)), .by = began - before}});
+                        show::event::ClockSet{.now = dayAndClockOf(revision_->nights->zone().at(utc)), .by = began - before}});
     began_ = began;
 }
 

@@ -4,8 +4,8 @@
 #include "show/play/input_log.h"
 #include "show/play/playback_replica.h"
 #include "show/play/show_clock.h"
+#include "show/played_show.h"
 #include "show/schedule/nights.h"
-#include "show/show.h"
 
 #include "core/clock.h"
 #include "core/wall_clock.h"
@@ -22,15 +22,15 @@ namespace fantascope::app {
 //   entered so (Input::ago).
 // - A clock that is set back by a few minutes calls no cue again.
 // - What people do between two moments of the schedule stays, until the next one.
+// - If the show is revised, the cue of the same name that is due counts as called.
 // - In a panic no cue can be entered, so the schedule waits for its end.
 //
 // Thread: one at a time.
 class ShowCaller {
 public:
-    // All arguments but `showClock` outlive this. `nights`: null if the show has no schedule; then
-    // it does nothing.
-    ShowCaller(const show::Nights* nights, const show::Show& show, show::InputLog& inputs, show::EventLog& events,
-               const WallClock& wall, const show::ShowClock& showClock);
+    // All arguments but `showClock` outlive this. It does nothing where the show has no schedule.
+    ShowCaller(const show::PlayedShow& show, show::InputLog& inputs, show::EventLog& events, const WallClock& wall,
+               const show::ShowClock& showClock);
 
     // Calls what is due as the run starts. `followed`: until then (UTC) an earlier run has followed
     // the schedule, or somebody wants another cue first; nothing: the show begins.
@@ -41,11 +41,12 @@ public:
     std::string nextDay() const;
 
 private:
+    void follow(const show::Revision& revision, Time utc);
     bool isCalled(const show::Nights::Moment& due, Time utc) const;
     void tellOfClock(Time utc, Time moment);
 
-    const show::Nights* const nights_;
-    const show::Show& show_;
+    const show::PlayedShow& show_;
+    const show::Revision* revision_;  // that the cues below are of
     show::InputLog& inputs_;
     show::EventLog& events_;
     const WallClock& wall_;

@@ -71,7 +71,7 @@ struct ImageSource {
 struct VideoSource {
     std::shared_ptr<VideoStream> stream;
     Time from{};             // where it begins, in the video
-    std::optional<Time> to;  // where it ends, after `from`; none, or later than that: the video's end
+    std::optional<Time> to{};  // where it ends, after `from`; none, or later than that: the video's end
     int times = 0;           // so often it plays; 0: for ever
     bool endsDark = false;   // after that nothing is seen, else its last frame
     double speed = 1;        // positive

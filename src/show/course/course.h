@@ -46,6 +46,8 @@ struct Course {
         return static_cast<float>(seconds(time - start) / seconds(length));
     }
     float valueAt(Time time) const { return std::lerp(from, to, along(curve, shareAt(time))); }
+    // Whether it is anything but 0 at `time` or later.
+    bool isSeenFrom(Time time) const { return to != 0 || (from != 0 && time - start < length); }
     friend bool operator==(const Course&, const Course&) = default;
 };
 

@@ -103,6 +103,16 @@ void CuePlayer::examine(const CueList& list) {
     FANTASCOPE_CHECK(!hurriedLoop(list.cues, list.loops), "a circle of cues that follow each other takes time");
 }
 
+bool CuePlayer::needs(SourceId source, Time time) const {
+    const auto isIn = [&](const OutputState& output) {
+        return std::ranges::find(output.layers, source, &LayerState::source) != output.layers.end();
+    };
+    const auto hasIt = [&](const CueList::Cue& cue) { return std::ranges::any_of(cue.look.outputs, isIn); };
+    if (std::ranges::any_of(cues().cues, hasIt) || at(time).seen.shows(source, time)) return true;
+    return std::ranges::any_of(entries_,
+                               [&](const Entry& entry) { return entry.at > time && entry.seen.shows(source, entry.at); });
+}
+
 LookCourses::Room CuePlayer::room() const { return {sources_.size() + composed_.layers, composed_.pictures}; }
 
 void CuePlayer::enter(int cue, Time at, Time ago) {

@@ -117,6 +117,9 @@ public:
 
     // Whether a look of any list so far has a source.
     bool shows(SourceId source) const { return sources_.contains(source); }
+    // Whether a source may be seen at `time` or later: the newest list has it, or what was seen
+    // with it is not over.
+    bool needs(SourceId source, Time time) const;
     // For any output at any time.
     LookCourses::Room room() const;
 

@@ -123,6 +123,15 @@ struct Teller {
         return fmt::format("{}: the pattern is fitted to this wall and reads {:.0f} % better: {} shapes come, {} go, {} change",
                            fitted.source, percent, fitted.made, fitted.removed, fitted.changed);
     }
+    std::string operator()(const event::ShowRevised& revised) const {
+        return revised.files + " was saved: the show goes on with it" + revised.news;
+    }
+    std::string operator()(const event::RevisionRefused& refused) const {
+        return fmt::format("{} was saved, but the show goes on as it was: {}", refused.files, refused.why);
+    }
+    std::string operator()(const event::SiteChanged& changed) const {
+        return changed.file.string() + " was saved: it counts when the show begins anew";
+    }
     std::string operator()(const event::SettingUpBegan&) const {
         return "setting up the outputs: the picture lists the keys, e ends it";
     }

@@ -142,6 +142,20 @@ struct PatternFitted {
     std::size_t made = 0, removed = 0, changed = 0;  // instances
     bool applied = false;                            // false: advice
 };
+// The show was saved, or files of its sources, and goes on with what is new.
+struct ShowRevised {
+    std::string files;
+    std::string news{};  // "; ..." of what came of them
+};
+// Something was saved that cannot be taken over.
+struct RevisionRefused {
+    std::string files;
+    std::string why;  // may have several lines
+};
+// The site file was saved.
+struct SiteChanged {
+    std::filesystem::path file;
+};
 struct SettingUpBegan {};
 struct SettingUpEnded {
     bool saved = false;
@@ -153,11 +167,11 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What =
-    std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ListChosen, ShowResumed, ScheduleCalled,
-                 NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, FaultBegan, FaultEnded, SendersChanged, PictureTaken,
-                 PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted,
-                 LampsTrimmed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ListChosen, ShowResumed,
+                          ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, FaultBegan, FaultEnded,
+                          SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear,
+                          CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised, RevisionRefused, SiteChanged,
+                          SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -16,10 +16,10 @@ namespace {
 constexpr std::array<std::string_view, 18> kKinds = {"go",     "back",    "jump",     "blackout",    "dark",    "light",
                                                      "revise", "correct", "exchange", "corrections", "trim",    "lock",
                                                      "load",   "pause",   "freeze",   "panic",       "restore", "master"};
-constexpr std::array<std::string_view, 8> kSources = {"start",  "controller", "contact", "terminal",
-                                                      "screen", "schedule",   "camera",  "journal"};
+constexpr std::array<std::string_view, 9> kSources = {"start",    "controller", "contact", "terminal", "screen",
+                                                      "schedule", "camera",     "journal", "file"};
 static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Master) + 1);
-static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Journal) + 1);
+static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::File) + 1);
 
 constexpr std::string_view kList = "list", kLate = "late";
 

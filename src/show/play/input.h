@@ -44,7 +44,8 @@ struct Input {
         Screen,      // a key at a projector's window
         Schedule,    // the show's schedule, or GO by that of a rehearsal without an operator
         Camera,      // what the camera sees; of Correct: on output `which`; of Exchange: of source `which`
-        Journal      // what an earlier run has left, where its journal is damaged
+        Journal,     // what an earlier run has left, where its journal is damaged
+        File         // a file of the show that was saved
     };
     Time at{};  // show time
     Kind kind = Kind::Go;

@@ -152,6 +152,17 @@ void LookCourses::lookAt(std::span<const LookCourses* const> lists, Time time, c
     }
 }
 
+bool LookCourses::shows(SourceId source, Time time) const {
+    const auto isIt = [&](const auto& layer) { return layer.source == source; };
+    return std::ranges::any_of(outputs_, [&](const OutputCourse& output) {
+        const auto added = [&](const LayerCourse& layer) { return isIt(layer) && layer.opacity.isSeenFrom(time); };
+        const auto composed = [&](const PictureCourse& picture) {
+            return picture.share.isSeenFrom(time) && std::ranges::any_of(picture.layers, isIt);
+        };
+        return std::ranges::any_of(output.layers, added) || std::ranges::any_of(output.pictures, composed);
+    });
+}
+
 void LookCourses::addLayers(std::size_t output, Time time, OutputState& out) const {
     const std::size_t ofOthers = out.layers.size();
     for (const LayerCourse& layer : outputs_[output].layers) {

@@ -40,6 +40,8 @@ public:
     // and the highest opacity of a source count; a source plays as the first list with it says.
     // Composed pictures add their light. A relay is as the list has it that switched it last.
     static void lookAt(std::span<const LookCourses* const> lists, Time time, const Room& room, Look& out);
+    // Whether a source is seen at `time` or later.
+    bool shows(SourceId source, Time time) const;
     // The wind of an output at `time`; `lull` is Gusts::lullAt(time).
     Wind windAt(std::size_t output, Time time, double lull) const { return outputs_[output].wind.at(time, lull); }
 

@@ -211,6 +211,7 @@ void Playback::foresee(Time time) {
     for (Steps<bool>* const steps : {&corrects_, &locked_, &paused_}) steps->forget(kept);
     frozen_.forget(kept);
     taken_.forget(kept);
+    revisions_.forget(kept);
     shifts_.forget(kept);
     trims_.forget(kept);
 }
@@ -233,6 +234,7 @@ Outcome Playback::revise(std::shared_ptr<const CueList> list, Time at) {
         }
         player.revise(revised, cueTime);
     }
+    revisions_.set(at, revisions_.last() + 1);
     return Outcome::Taken;
 }
 
@@ -313,6 +315,15 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.locked = locked_.at(time);
     if (const float light = blackout_.at(time) * panic_.at(time) * master_.at(time); light < 1) dim(out, light);
     out.inputs = taken_.at(time);
+    out.revision = revisions_.at(time);
+}
+
+bool Playback::needs(SourceId source, Time time) const {
+    const auto shows = [&](const Played& list) { return list.player.needs(source, cueTime_.at(time)); };
+    if (std::ranges::any_of(lists_, shows)) return true;
+    const Frozen* const frozen = frozen_.at(time).get();
+    return frozen != nullptr &&
+           std::ranges::any_of(frozen->seen, [&](const LookCourses& seen) { return seen.shows(source, frozen->cueTime); });
 }
 
 bool Playback::isTooLate(const Input& input) {

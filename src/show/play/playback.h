@@ -93,6 +93,9 @@ public:
     // The cue that follows then.
     std::optional<int> followerAt(Time time, int list = 0) const { return playerOf(list).followerAt(cueTime_.at(time)); }
 
+    // Whether a source may be seen at `time` or later, unless the list is revised.
+    bool needs(SourceId source, Time time) const;
+
     // What is seen at `time`. Any time will do, but a list that loops, or has others beside it,
     // must have been foreseen until then. For a time that is forgotten it gives what is oldest. The
     // cost is a few binary searches and the evaluation of each course. The call allocates only when
@@ -142,9 +145,10 @@ private:
     ShiftCourses shifts_;
     PatternCourses patterns_;
     TrimCourses trims_;
-    Steps<std::uint64_t> taken_;  // how many inputs have taken effect
-    std::optional<Time> wentOn_;  // when cue time went on last
-    Time newest_ = Time::min();   // the latest time of all inputs, including ignored ones
+    Steps<std::uint64_t> taken_;      // how many inputs have taken effect
+    Steps<std::uint64_t> revisions_;  // how many of them have revised the list
+    std::optional<Time> wentOn_;      // when cue time went on last
+    Time newest_ = Time::min();       // the latest time of all inputs, including ignored ones
 };
 
 }  // namespace fantascope::show

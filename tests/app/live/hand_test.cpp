@@ -33,7 +33,7 @@ protected:
 
     RunningShow run_;
     show::PlaybackReplica lamps_{run_.inputs};
-    Hand hand_{run_.show, run_.inputs, run_.site, run_.devices, show::ShowClock(), run_.events};
+    Hand hand_{run_.played, run_.inputs, run_.site, run_.devices, show::ShowClock(), run_.events};
 };
 
 TEST_F(HandPart, a_press_reaches_every_part_of_the_show_and_the_operator) {
@@ -88,7 +88,7 @@ TEST_F(HandPart, tells_of_the_loaded_cue_that_go_has_entered_once) {
 // Example failure: a press of a show that was resumed after three hours counts as one from before
 // its cues.
 TEST_F(HandPart, of_a_resumed_show_stamps_presses_with_show_time) {
-    Hand hand{run_.show, run_.inputs, run_.site, run_.devices, show::ShowClock(1s, 3h), run_.events};
+    Hand hand{run_.played, run_.inputs, run_.site, run_.devices, show::ShowClock(1s, 3h), run_.events};
     run_.clock.advance(2s);
     run_.world.press(run_.buttonOf(show::Button::Go), true);
     run_.clock.advance(5ms);
@@ -193,7 +193,7 @@ TEST(HandLights, are_told_once_a_change_and_of_editing_too) {
     std::vector<std::pair<int, ButtonLight>> told;
     run.site.buttons = {{4, show::Button::Go}, {7, show::Button::Edit}, {9, show::Button::Left}};
     run.devices.cueController = std::make_unique<CountingController>(told);
-    Hand hand{run.show, run.inputs, run.site, run.devices, show::ShowClock(), run.events};
+    Hand hand{run.played, run.inputs, run.site, run.devices, show::ShowClock(), run.events};
     bool editing = false;
     hand.editing = [&] { return editing; };
     const auto toldIn = [&](Time length) {
@@ -221,7 +221,7 @@ TEST(ContactsPart, a_gate_steps_the_cues_and_an_emergency_button_darkens_the_sho
                          {"emergency", 1, 1, show::ContactAction::Dark, show::ContactAction::Light}};
     run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
     show::PlaybackReplica lamps{run.inputs};
-    Hand hand{run.show, run.inputs, run.site, run.devices, show::ShowClock(), run.events};
+    Hand hand{run.played, run.inputs, run.site, run.devices, show::ShowClock(), run.events};
     const auto stateAfter = [&](const char* bank, bool closed) {
         run.world.setContact(bank, 1, closed);
         hand.tick(run.clock.now());

@@ -148,10 +148,10 @@ protected:
         start_ = frames_->refreshFrom(1s);
         const show::ShowClock showClock(start_);
         lighting_.emplace(site_, inputs_, devices_, clock_, showClock, recording_.get(), faults_, events_);
-        hand_.emplace(show_, inputs_, site_, devices_, showClock, events_);
+        hand_.emplace(played_, inputs_, site_, devices_, showClock, events_);
         const std::vector<Watch::Comparisons> nothing(names.size(), Watch::Comparisons());
-        watch_.emplace(show_, names, nothing, devices_.camera.get(), nullptr, showClock, recording_.get());
-        screenshots_.emplace(folder_ / "pictures", show_, inputs_, names, pictured, showClock, events_);
+        watch_.emplace(played_, names, nothing, devices_.camera.get(), nullptr, showClock, recording_.get());
+        screenshots_.emplace(folder_ / "pictures", played_, inputs_, names, pictured, showClock, events_);
         deviceWatch_.emplace(faults_, std::vector<std::string>{site_.relayBanks[0].name}, start_);
         faults_.begin(showClock);
         frames_->begin(showClock);
@@ -210,6 +210,7 @@ protected:
     show::Site site_ = aSmallSite();
     show::Show show_ = valueOf(show::Show::load(sourceFolder() + "/shows/light-movement"));
     show::CueList cues_ = valueOf(show_.bind(site_));
+    show::PlayedShow played_{std::make_shared<const show::Revision>(show::Revision{show_, site_, cues_, {}})};
     show::InputLog inputs_{cues_};
     SteppedClock clock_;
     site::World world_{clock_};

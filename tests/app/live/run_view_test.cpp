@@ -14,7 +14,7 @@ class View : public testing::Test {
 protected:
     RunningShow run_;
     const show::ShowClock clock_{10s, 3h};
-    RunView view_{run_.show, run_.inputs, run_.events, clock_, 60s};
+    RunView view_{run_.played, run_.inputs, run_.events, clock_, 60s};
 };
 
 TEST_F(View, counts_cues_in_show_time_and_what_is_left_in_run_time) {
@@ -35,7 +35,7 @@ TEST_F(View, tells_the_first_cue_after_the_last_of_a_show_that_loops) {
     loop.loops = true;
     for (const bool loops : {false, true}) {
         show::InputLog inputs(loops ? loop : run_.cues);
-        RunView view(run_.show, inputs, run_.events, clock_, 60s);
+        RunView view(run_.played, inputs, run_.events, clock_, 60s);
         inputs.submit({3h, show::Input::Kind::Jump, last});
         EXPECT_EQ(view.at(11s, Time::max()).nextName, loops ? "Dusk" : "");
     }
@@ -48,7 +48,7 @@ TEST_F(View, tells_what_follows_and_what_go_would_enter) {
     loop.cues[0].follow = 10s;
     loop.cues[0].followers = {2};
     show::InputLog inputs(loop);
-    RunView view(run_.show, inputs, run_.events, clock_, 60s);
+    RunView view(run_.played, inputs, run_.events, clock_, 60s);
     inputs.submit({3h + 1s, show::Input::Kind::Go});
     const RunStatus status = view.at(12s, Time::max());
     EXPECT_EQ(status.nextName, run_.show.cues[2].name);

@@ -41,7 +41,7 @@ protected:
         EXPECT_TRUE(loop_->prepare());
         start_ = run_.clock.now();
         loop_->begin(show::ShowClock(start_));
-        screenshots_.emplace(folder_ / "pictures", run_.show, run_.inputs, names, frames, show::ShowClock(start_), run_.events);
+        screenshots_.emplace(folder_ / "pictures", run_.played, run_.inputs, names, frames, show::ShowClock(start_), run_.events);
     }
     void play(Time length) {
         for (const Time end = run_.clock.now() + length; run_.clock.now() < end;) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "pattern/shape/shape_pattern.h"
+#include "render/source/picture_source.h"
+
+#include "core/clock.h"
+#include "core/result.h"
+
+#include <cstddef>
+#include <memory>
+
+namespace fantascope::app {
+
+// A light pattern whose drawing was saved: the search goes on from the pattern that is shown, for a
+// short while. Shapes come, go and move where the drawing has changed, and all others stay.
+struct RedrawnPattern {
+    std::shared_ptr<const pattern::ShapePattern> pattern;
+    render::PatternSource source;                    // that draws it
+    std::size_t made = 0, removed = 0, changed = 0;  // instances
+    double toneBefore = 0, toneAfter = 0;            // difference from the drawing, seen from afar, of full light
+
+    static constexpr Time kSearch = std::chrono::milliseconds(1200);
+    // `shown`: its guide is the drawing that was saved. Error: the drawing cannot be read or has
+    // another shape, or the pattern was not compared in light.
+    static Result<RedrawnPattern> of(const pattern::ShapePattern& shown);
+};
+
+}  // namespace fantascope::app
