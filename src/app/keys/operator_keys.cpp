@@ -58,9 +58,8 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         case Action::Back:
             return enter(Kind::Back);
         case Action::LoadPrevious:
-            return load(input, -1);
         case Action::LoadNext:
-            return load(input, 1);
+            return load(input, *action == Action::LoadNext ? 1 : -1);
         case Action::NextList:
             return chooseList(input.at);
         case Action::Blackout:
@@ -74,9 +73,8 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         case Action::Restore:
             return take(Kind::Restore);
         case Action::Dimmer:
-            return dim(input, -1);
         case Action::Brighter:
-            return dim(input, 1);
+            return dim(input, *action == Action::Brighter ? 1 : -1);
         case Action::Corrections:
             return toggle(Kind::Corrections);
         case Action::Lock:

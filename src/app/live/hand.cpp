@@ -75,11 +75,21 @@ void Hand::tell(Time showTime) {
     for (std::size_t side = 0; side < state_.sides.size(); ++side)
         tellCues(showTime, told_.sides[side], state_.sides[side], static_cast<int>(side) + 1);
     told_ = state_;
+    toldRevision_ = state_.revision;
 }
 
 // What has changed in a list.
-void Hand::tellCues(Time showTime, const show::ListPlace& told, const show::ListPlace& now, int list) {
+void Hand::tellCues(Time showTime, show::ListPlace told, const show::ListPlace& now, int list) {
     const std::vector<show::Cue>& cues = show_.at(state_.revision).show.cuesOf(list);
+    if (toldRevision_ != state_.revision) {  // the cue of the same name is the same, whatever its number
+        const std::vector<show::Cue>& before = show_.at(toldRevision_).show.cuesOf(list);
+        const auto isSame = [&](int one, int other) {
+            return one >= 0 && other >= 0 &&
+                   before[static_cast<std::size_t>(one)].name == cues[static_cast<std::size_t>(other)].name;
+        };
+        if (isSame(told.cue, now.cue)) told.cue = now.cue;
+        if (isSame(told.loaded, now.loaded)) told.loaded = now.loaded;
+    }
     // News of a cue by its number; -1: of none.
     const auto named = [&](auto news, int cue) {
         if (list > 0) news.list = sides_[static_cast<std::size_t>(list) - 1];

@@ -9,6 +9,7 @@
 #include "show/play/show_clock.h"
 #include "show/played_show.h"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -39,7 +40,7 @@ private:
     ButtonLight lightOf(const show::SiteButton& button, Time showTime) const;
     void light(Time showTime);
     void tell(Time showTime);
-    void tellCues(Time showTime, const show::ListPlace& told, const show::ListPlace& now, int list);
+    void tellCues(Time showTime, show::ListPlace told, const show::ListPlace& now, int list);
 
     const show::PlayedShow& show_;
     const show::Site& site_;
@@ -55,6 +56,7 @@ private:
     show::ShowState state_;
     std::vector<ButtonLight> lights_;  // of Site::buttons, as last sent to the controller
     show::Controls told_;              // what the newest events say
+    std::uint64_t toldRevision_ = 0;   // that its cues are of
 };
 
 }  // namespace fantascope::app

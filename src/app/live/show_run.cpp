@@ -50,8 +50,7 @@ constexpr double kSiteRate = 120;                          // Hz; a camera frame
 constexpr double kProgressRate = 2;                        // Hz
 constexpr Time kStartUp = std::chrono::milliseconds(100);  // for making the parts and starting their threads
 
-// A running show: its parts, and what they pass to each other. lightParts() and otherParts() list
-// the parts.
+// A running show: its parts (lightParts(), otherParts()), and what they pass to each other.
 class ShowRun {
 public:
     // All arguments outlive this. `recording`, `guard` and `journal` may be null.
@@ -97,9 +96,6 @@ public:
           lights_(programme.site, openSite.devices, lighting_, faults_, clock, guard) {
         faults_.begin(showClock_);
         frames_.begin(showClock_);
-        for (const auto& news : lightNewsOf(programme.site, programme.light))
-            events_.append({showClock_.showTime(showClock_.runStart()), news});
-        if (!options.asFastAsPossible) frames_.makeRenderersAside();
         if (recorder_) recorder_->begin(showClock_.runStart());
         frames_.publishStateTo(watch_.shown());
         if (!watched_.empty()) {
@@ -176,6 +172,9 @@ public:
     // The render thread's loop. When it returns, the lights have begun to end.
     Result<void> draw() {
         TRY(std::move(prepared_));
+        for (const auto& news : lightNewsOf(programme_.site, programme_.light))
+            events_.append({showClock_.showTime(showClock_.runStart()), news});
+        if (!options_.asFastAsPossible) frames_.makeRenderersAside();
         clock_.sleepUntil(showClock_.runStart());
         const Time end = options_.length ? showClock_.runStart() + *options_.length : Time::max();
         const auto stopped = [&] { return supervisor_.ending(); };
@@ -213,8 +212,8 @@ public:
     void closeLights() {
         lights_.close([this] { keys_.close(); });
     }
-    // Reports which relays are not safe and which fixtures do not have their end levels, and any
-    // other news. Call it once the lights are closed.
+    // Tells which lights are not as they should be, and any other news. Call it once they are
+    // closed.
     void tellTheRest(const std::function<void(const RunStatus&)>& progress) {
         const Time end = showClock_.runStart() + length_;
         lights_.raiseFaults(end);

@@ -85,6 +85,30 @@ TEST_F(HandPart, tells_of_the_loaded_cue_that_go_has_entered_once) {
                 ElementsAre("GO enters cue 4 of 6: " + run_.show.cues[3].name, "cue 4 of 6: " + run_.show.cues[3].name));
 }
 
+// Example failure: somebody writes a cue before the one that is on, and the terminal tells that a
+// cue was entered.
+TEST_F(HandPart, tells_nothing_of_a_cue_that_goes_on_after_a_revision) {
+    press(show::Button::Go);
+    run_.inputs.submit({.at = run_.clock.now(), .kind = show::Input::Kind::Load, .cue = 3});
+    hand_.tick(run_.clock.now());
+    const std::size_t before = run_.told().size();
+    show::Revision revised{run_.show, run_.site, {}, {}};
+    revised.show.cues.insert(revised.show.cues.begin(), revised.show.cues[0]);
+    revised.show.cues[0].name = "Overture";
+    revised.cues = valueOf(revised.show.bind(run_.site));
+    const auto shared = std::make_shared<const show::Revision>(std::move(revised));
+    const int number = run_.inputs.add(show::Revision::cuesOf(shared));
+    EXPECT_TRUE(run_.played.revise(shared, [&] {
+        const auto logged = run_.inputs.submit({.at = run_.clock.now(), .kind = show::Input::Kind::Revise, .revision = number});
+        return logged.outcome == show::Outcome::Taken;
+    }));
+    hand_.tick(run_.clock.now());
+    EXPECT_EQ(run_.told().size(), before);
+    run_.clock.advance(1s);
+    press(show::Button::Go);
+    EXPECT_EQ(run_.told().back(), "cue 4 (5 of 7): " + run_.show.cues[3].name) << "the loaded one";
+}
+
 // Example failure: a press of a show that was resumed after three hours counts as one from before
 // its cues.
 TEST_F(HandPart, of_a_resumed_show_stamps_presses_with_show_time) {
