@@ -62,8 +62,8 @@ template <class Read, std::size_t kCount>
 Result<Read*> chosenFrom(const Driver<Read> (&table)[kCount], const ConfigNode& options) {
     std::vector<std::string> names;
     for (const auto& driver : table) names.emplace_back(driver.name);
-    for (const auto& [key, node] : TRY(options.entries()))
-        if (key == "driver") return table[TRY(node.choice(names))].read;
+    if (const auto driver = options.find("driver")) return table[TRY(driver->word(names))].read;
+    TRY(options.entries());  // it is a map
     return options.error(fmt::format("'driver' is missing, one of {} is needed", fmt::join(names, ", ")));
 }
 

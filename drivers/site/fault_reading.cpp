@@ -122,13 +122,10 @@ void declareOfCamera(ConfigFields& fields, Fault& fault) {
 Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
     Fault fault;
     // A fault's keys depend on its kind, so the kind is read first, wherever it stands.
-    bool kindKnown = false;
-    for (const auto& [key, value] : TRY(node.entries()))
-        if (key == "kind") {
-            fault.kind = static_cast<Fault::Kind>(TRY(value.choice(kFaultKinds)));
-            kindKnown = true;
-        }
-    if (!kindKnown) return node.error(fmt::format("'kind' is missing; one of {} is needed", fmt::join(kFaultKinds, ", ")));
+    TRY(node.entries());  // it is a map
+    const auto found = node.find("kind");
+    if (found) fault.kind = static_cast<Fault::Kind>(TRY(found->choice(kFaultKinds)));
+    if (!found) return node.error(fmt::format("'kind' is missing; one of {} is needed", fmt::join(kFaultKinds, ", ")));
 
     const Span span{fault.at, fault.until};
     ConfigFields fields(node);

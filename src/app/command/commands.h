@@ -39,6 +39,8 @@ void addPlotCommand(Program& program);
 void addReportCommand(Program& program);
 // `fantascope schedule SHOW --site SITE`: the season as a table.
 void addScheduleCommand(Program& program);
+// `fantascope schema show|site`: a JSON schema of the files, for editors.
+void addSchemaCommand(Program& program);
 // fantascope check PATH... [--site SITE]
 void addCheckCommand(Program& program);
 // `calibrate SITE [OUTPUT..]`: the outputs' warps, found with the camera.

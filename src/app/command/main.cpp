@@ -17,7 +17,7 @@ constexpr AddCommand kCommands[] = {addPatternCommand,   addPoseCommand,     add
                                     addFabricateCommand, addConvertCommand,  addRehearseCommand, addRunCommand,
                                     addExportCommand,    addTemplateCommand, addPreviewCommand,  addPlotCommand,
                                     addReportCommand,    addScheduleCommand, addCheckCommand,    addCalibrateCommand,
-                                    addLensCommand,      addDevicesCommand,  addGuardCommand};
+                                    addLensCommand,      addDevicesCommand,  addSchemaCommand,   addGuardCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

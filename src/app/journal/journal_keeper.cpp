@@ -65,6 +65,7 @@ void JournalKeeper::tick(const show::journal::Figures& now) {
     }
     while (const show::Event* const event = told_.next()) {
         const bool isHelp = std::holds_alternative<show::event::KeysAsked>(event->what) ||
+                            std::holds_alternative<show::event::StateTold>(event->what) ||
                             std::holds_alternative<show::event::NextDayTold>(event->what);
         if (std::string sentence = show::sentenceOf(*event); !sentence.empty() && !isHelp)
             journal_->write(show::journal::Told{event->at, std::move(sentence)}, false);

@@ -82,10 +82,7 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         case Action::Pictures:
             return actions_.takePictures();
         case Action::Keys:
-            events_.append({input.at, show::event::KeysAsked{runKeysText()}});
-            if (std::string lines = actions_.nextDay(); !lines.empty())
-                events_.append({input.at, show::event::NextDayTold{std::move(lines)}});
-            return;
+            return tellAll(input.at);
         case Action::Quit:
             if (quitKey_.press(moment)) return actions_.end();
             events_.append({input.at, show::event::QuitAsked{std::string(keyFor(*action)), QuitKey::kPatience}});
@@ -106,6 +103,14 @@ void OperatorKeys::load(show::Input input, int step) {
     input.list = list_;
     input.cue = std::clamp(next.value_or(last + 1) + step, 0, last);
     inputs_.submit(input);
+}
+
+// The keys, how it is, and what the schedule brings.
+void OperatorKeys::tellAll(Time at) {
+    events_.append({at, show::event::KeysAsked{runKeysText()}});
+    replica_.stateAt(at, state_);
+    events_.append({at, show::event::StateTold{actions_.howItIs(state_)}});
+    if (std::string lines = actions_.nextDay(); !lines.empty()) events_.append({at, show::event::NextDayTold{std::move(lines)}});
 }
 
 void OperatorKeys::chooseList(Time at) {

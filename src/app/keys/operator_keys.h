@@ -34,6 +34,7 @@ public:
         std::function<void()> takePictures;
         std::function<void()> end;
         std::function<std::string()> nextDay;  // what the show's schedule brings, in lines; empty: there is none
+        std::function<std::string(const show::ShowState&)> howItIs;  // in lines
     };
     // The logs outlive this. `terminal`: null if nobody can press a key there.
     OperatorKeys(show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock,
@@ -59,6 +60,7 @@ private:
     void takeOver(const show::Input& input);
     void load(show::Input input, int step);
     void chooseList(Time at);
+    void tellAll(Time at);
     void dim(show::Input input, int step);
 
     show::InputLog& inputs_;

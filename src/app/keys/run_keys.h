@@ -59,7 +59,7 @@ constexpr std::array<RunKey, 18> kRunKeys = {
      {letterKey('e'), "e", "set the outputs up; again: done", RunKey::Action::SetUp},
      {letterKey('c'), "c", "take the camera's corrections back; again: allow them", RunKey::Action::Corrections},
      {letterKey('l'), "l", "lock hand controller, contacts and windows, but for darkness; again: unlock", RunKey::Action::Lock},
-     {letterKey('?'), "?", "tell the keys", RunKey::Action::Keys},
+     {letterKey('?'), "?", "tell the keys, what is dark and why, and what comes", RunKey::Action::Keys},
      {letterKey('q'), "q", "end; `run` asks for it twice", RunKey::Action::Quit}}};
 
 // Shift and Control do not matter.

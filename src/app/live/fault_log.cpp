@@ -54,6 +54,17 @@ std::vector<FaultReport> FaultLog::faults() const {
     return reports;
 }
 
+std::vector<FaultReport> FaultLog::open() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<FaultReport> reports;
+    for (const auto& [topic, state] : topics_)
+        if (state.open) {
+            const Fault& fault = faults_[*state.open];
+            reports.push_back({showClock_.showTime(fault.moment), fault.what, fault.device});
+        }
+    return reports;
+}
+
 void DeviceWatch::look(Time moment, std::span<const DeviceStatus> devices) {
     for (const DeviceStatus& device : devices) {
         const std::string called = fmt::format("{} ({})", device.name, device.driver);

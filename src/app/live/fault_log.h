@@ -50,6 +50,7 @@ public:
     }
 
     std::vector<FaultReport> faults() const;  // in the order of their beginning
+    std::vector<FaultReport> open() const;    // those that last, by device
 
 private:
     struct TopicState {

@@ -36,6 +36,7 @@ enum Part {
     Sides,
     Schedule,
     Left,
+    Unwell,
     Late,
     Rate,
     Scores,
@@ -46,10 +47,10 @@ using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
 constexpr line::Part kShortening[] = {
-    line::Scores, line::Rate,   line::Next,      line::Schedule, line::Sides,     line::Sides,  line::Next,   line::Cue,
-    line::Cue,    line::Late,   line::Fade,      line::Left,     line::Next,      line::Next,   line::Loaded, line::Locked,
-    line::Paused, line::Frozen, line::SettingUp, line::Cue,      line::SettingUp, line::Loaded, line::Locked, line::Master,
-    line::Paused, line::Frozen, line::Sides,     line::Panic,    line::Blackout,  line::Cue};
+    line::Scores, line::Rate,   line::Next,      line::Schedule, line::Sides,     line::Sides,  line::Next,     line::Cue,
+    line::Cue,    line::Late,   line::Fade,      line::Left,     line::Next,      line::Next,   line::Loaded,   line::Locked,
+    line::Paused, line::Frozen, line::SettingUp, line::Cue,      line::SettingUp, line::Loaded, line::Locked,   line::Master,
+    line::Paused, line::Frozen, line::Sides,     line::Unwell,   line::Unwell,    line::Panic,  line::Blackout, line::Cue};
 
 Forms cueForms(const RunStatus& status) {
     const int cue = status.controls.cue;
@@ -121,6 +122,7 @@ std::array<Forms, line::kParts> partsOf(const RunStatus& status) {
     parts[line::Sides] = sideForms(status);
     parts[line::Schedule] = {status.schedule, ""};
     parts[line::Left] = {status.left ? shortDuration(*status.left) + " left" : "at " + shortDuration(status.showTime), ""};
+    if (!status.unwell.empty()) parts[line::Unwell] = {"NOT WELL: " + status.unwell, "NOT WELL", ""};
     parts[line::Late] = {fmt::format("{} late", status.lateFrames), ""};
     if (status.framesPerSecond) parts[line::Rate] = {fmt::format("{:.1f} frames/s", *status.framesPerSecond), ""};
     parts[line::Scores] = {scoresOf(status), ""};

@@ -1,7 +1,11 @@
 #include "app/live/run_view.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <utility>
 
 namespace fantascope::app {
@@ -51,6 +55,40 @@ bool RunView::hasNews() {
         if (const std::string sentence = show::sentenceOf(*event); !sentence.empty())
             news_ += (news_.empty() ? "" : news_.find('\n') == std::string::npos ? "; " : "\n") + sentence;
     return !news_.empty();
+}
+
+namespace {
+
+// Why everything is dark; empty: it is not.
+std::string darknessOf(const show::ShowState& state) {
+    if (state.panic) return "everything is dark: PANIC";
+    if (state.blackout) return "pictures and lamps are dark: BLACKOUT";
+    if (state.master == 0) return "pictures and lamps are dark: the master is at 0";
+    return "";
+}
+
+}  // namespace
+
+std::string howItIs(const show::ShowState& state, const show::Revision& revision, const std::vector<FaultReport>& faults) {
+    std::string lines = darknessOf(state);
+    const auto add = [&](const std::string& line) { lines += (lines.empty() ? "" : "\n") + line; };
+    const bool isAllDark = !lines.empty();
+    for (std::size_t output = 0; !isAllDark && output < state.outputs.size(); ++output) {
+        if (!state.outputs[output].layers.empty()) continue;
+        const std::string cue = state.cue < 0 ? "no cue is on"
+                                              : fmt::format("'{}' shows nothing there, or not yet",
+                                                            revision.show.cues[static_cast<std::size_t>(state.cue)].name);
+        add(fmt::format("'{}' is dark: {}", revision.site.outputs[output].name, cue));
+    }
+    for (const FaultReport& fault : faults) add("not well: " + fault.what);
+    return lines.empty() ? "every output shows something, and all is well" : lines;
+}
+
+std::string namesOf(const std::vector<FaultReport>& faults) {
+    std::set<std::string> names;
+    for (const FaultReport& fault : faults)
+        names.insert(fault.device.empty() ? fault.what.substr(0, fault.what.find(':')) : fault.device);
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace fantascope::app

@@ -12,6 +12,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace fantascope::app {
 
@@ -41,5 +42,11 @@ private:
     show::EventLog::Reader events_;
     std::string news_;
 };
+
+// How the show is, in lines: which outputs are dark, and why, and what is not well. `faults`: those
+// that last.
+std::string howItIs(const show::ShowState& state, const show::Revision& revision, const std::vector<FaultReport>& faults);
+// The devices and parts that have one of these faults: "left, dmx".
+std::string namesOf(const std::vector<FaultReport>& faults);
 
 }  // namespace fantascope::app

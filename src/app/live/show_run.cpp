@@ -309,15 +309,14 @@ private:
             readers.push_back(add(frames_.tap(output)));
         return readers;
     }
-
     OperatorKeys::Actions keyActions() {
-        return {[this](const Key& key) { return settingUp_.key(key); }, [this] { return openSite_.pressGo(programme_.site); },
-                [this] {
-                    if (screenshots_) screenshots_->take();
-                },
-                [this] { endLights(); }, [this] { return caller_.nextDay(); }};
+        return {[this](const Key& key) { return settingUp_.key(key); },
+                [this] { return openSite_.pressGo(programme_.site); },
+                [this] { screenshots_ ? screenshots_->take() : void(); },
+                [this] { endLights(); },
+                [this] { return caller_.nextDay(); },
+                [this](const show::ShowState& now) { return howItIs(now, played_.at(now.revision), faults_.open()); }};
     }
-
     // The simulated projectors throw what the displays show, whatever the displays' drivers are.
     Part simulatedSite() {
         openSite_.simulation->begin(showClock_.runStart());
@@ -332,11 +331,11 @@ private:
                 },
                 Rank::Watch};
     }
-
     RunStatus statusAt(Time moment) {
         RunStatus status = view_.at(moment, keys_.nextGo(), keys_.list());
         status.settingUp = settingUp_.on();
         status.keys = attended_;
+        status.unwell = namesOf(faults_.open());
         status.schedule = outlook_.at(wall_.now().utc);
         const std::int64_t shown = frames_.framesShown(), before = std::exchange(framesBefore_, shown);
         if (showClock_.runTime(moment) > Time{}) status.framesPerSecond = static_cast<double>(shown - before) * kProgressRate;

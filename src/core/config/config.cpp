@@ -1,6 +1,7 @@
 #include "core/config/config.h"
 
 #include "core/clock.h"
+#include "core/config/config_trace.h"
 #include "core/config/config_tree.h"
 #include "core/file.h"
 #include "core/geometry.h"
@@ -47,6 +48,11 @@ bool parseNumber(const std::string& text, Number& value) {
 
 }  // namespace
 
+void ConfigNode::trace(auto note) const {
+    ConfigTrace* const listening = ConfigTrace::of(tree_->file);
+    if (ConfigTrace::Asked* const asked = listening != nullptr ? listening->at(node_) : nullptr) note(*asked);
+}
+
 Result<ConfigNode> ConfigNode::load(const fs::path& path) { return parse(TRY(readFile(path)), path); }
 
 Result<ConfigNode> ConfigNode::parse(const std::string& text, const fs::path& name) {
@@ -86,6 +92,7 @@ bool operator==(const ConfigNode& a, const ConfigNode& b) {
 }
 
 Result<double> ConfigNode::number(double low, double high, std::string_view unit) const {
+    trace([&](ConfigTrace::Asked& asked) { asked.numbers.push_back({low, high, false}); });
     double value = 0;
     const std::string* const text = scalar();
     if (text == nullptr || !parseNumber(*text, value) || !std::isfinite(value))
@@ -96,6 +103,9 @@ Result<double> ConfigNode::number(double low, double high, std::string_view unit
 }
 
 Result<std::int64_t> ConfigNode::integer(std::int64_t low, std::int64_t high) const {
+    trace([&](ConfigTrace::Asked& asked) {
+        asked.numbers.push_back({static_cast<double>(low), static_cast<double>(high), true});
+    });
     std::int64_t value = 0;
     const std::string* const text = scalar();
     if (text == nullptr || !parseNumber(*text, value))
@@ -105,6 +115,7 @@ Result<std::int64_t> ConfigNode::integer(std::int64_t low, std::int64_t high) co
 }
 
 Result<bool> ConfigNode::boolean() const {
+    trace([](ConfigTrace::Asked& asked) { asked.isBoolean = true; });
     const std::string* const text = scalar();
     if (text != nullptr && *text == "true") return true;
     if (text != nullptr && *text == "false") return false;
@@ -112,6 +123,7 @@ Result<bool> ConfigNode::boolean() const {
 }
 
 Result<std::string> ConfigNode::text() const {
+    trace([](ConfigTrace::Asked& asked) { asked.isText = true; });
     const std::string* const text = scalar();
     if (text == nullptr || text->empty()) return error(fmt::format("a text is needed, here is {}", seen()));
     if (printable(*text, text->size()) != *text)  // these texts end up on terminals
@@ -120,10 +132,20 @@ Result<std::string> ConfigNode::text() const {
 }
 
 Result<std::size_t> ConfigNode::choice(std::initializer_list<std::string_view> names) const {
-    return choice(std::vector<std::string>(names.begin(), names.end()));
+    return word(std::vector<std::string>(names.begin(), names.end()));
+}
+
+Result<std::size_t> ConfigNode::word(const std::vector<std::string>& words) const {
+    trace([&](ConfigTrace::Asked& asked) { asked.choices = words; });
+    return chosen(words);
 }
 
 Result<std::size_t> ConfigNode::choice(const std::vector<std::string>& names) const {
+    trace([](ConfigTrace::Asked& asked) { asked.isText = true; });
+    return chosen(names);
+}
+
+Result<std::size_t> ConfigNode::chosen(const std::vector<std::string>& names) const {
     const std::string word = scalar() != nullptr ? *scalar() : "";
     const auto found = std::find(names.begin(), names.end(), word);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
@@ -155,6 +177,7 @@ Result<glm::dvec3> ConfigNode::vector3(double low, double high, std::string_view
 }
 
 Result<std::vector<ConfigNode>> ConfigNode::items(std::size_t least, std::size_t most) const {
+    trace([&](ConfigTrace::Asked& asked) { asked.least = least, asked.most = most; });
     if (!isList()) return error(fmt::format("a list is needed, here is {}", seen()));
     const std::vector<std::uint32_t>& parts = tree_->nodes[node_].parts;
     const std::size_t count = parts.size();
@@ -166,11 +189,28 @@ Result<std::vector<ConfigNode>> ConfigNode::items(std::size_t least, std::size_t
     }
     std::vector<ConfigNode> nodes;
     nodes.reserve(count);
-    for (const std::uint32_t item : parts) nodes.push_back(child(item, fmt::format("{}[{}]", key_, nodes.size())));
+    for (const std::uint32_t item : parts) {
+        if (ConfigTrace* const listening = ConfigTrace::of(tree_->file)) listening->name(item, node_, "[]", nodes.size());
+        nodes.push_back(child(item, fmt::format("{}[{}]", key_, nodes.size())));
+    }
     return nodes;
 }
 
+std::optional<ConfigNode> ConfigNode::find(std::string_view key) const {
+    if (!isMap()) return std::nullopt;
+    const std::vector<std::uint32_t>& parts = tree_->nodes[node_].parts;
+    for (std::size_t i = 0; i < parts.size(); i += 2) {
+        const ConfigTree::Node& name = tree_->nodes[parts[i]];
+        if (name.kind != ConfigTree::Kind::Scalar || name.text != key) continue;
+        if (ConfigTrace* const listening = ConfigTrace::of(tree_->file))
+            listening->name(parts[i + 1], node_, fmt::format(".{}", key), std::string(key));
+        return child(parts[i + 1], childKey(key));
+    }
+    return std::nullopt;
+}
+
 Result<std::vector<std::pair<std::string, ConfigNode>>> ConfigNode::entries() const {
+    trace([](ConfigTrace::Asked& asked) { asked.isNamed = true; });
     if (!isMap()) return error(fmt::format("a map is needed, here is {}", seen()));
     std::vector<std::pair<std::string, ConfigNode>> result;
     std::set<std::string> names;
@@ -180,6 +220,7 @@ Result<std::vector<std::pair<std::string, ConfigNode>>> ConfigNode::entries() co
         if (key.scalar() == nullptr) return key.error("a key must be a plain word");
         const std::string name = TRY(shortText(key));
         if (!names.insert(name).second) return key.error(fmt::format("'{}' is given twice", name));
+        if (ConfigTrace* const listening = ConfigTrace::of(tree_->file)) listening->name(parts[i + 1], node_, ".*", name);
         result.emplace_back(name, child(parts[i + 1], childKey(name)));
     }
     return result;
@@ -194,6 +235,7 @@ void ConfigFields::fail(std::pair<int, int> place, Error error) { failures_.empl
 void ConfigFields::visit(std::string_view key, const std::function<Result<void>(const ConfigNode&)>& use) {
     known_.emplace_back(key);
     const bool mayBeAbsent = std::exchange(nextOptional_, false);
+    node_.trace([&](ConfigTrace::Asked& asked) { asked.keys.emplace(key, !mayBeAbsent); });
     if (!node_.isMap()) return;
     const std::vector<ConfigTree::Node>& nodes = node_.tree_->nodes;
     const std::vector<std::uint32_t>& parts = nodes[node_.node_].parts;
@@ -204,6 +246,8 @@ void ConfigFields::visit(std::string_view key, const std::function<Result<void>(
         return;
     }
     const ConfigNode value = node_.child(parts[at + 1], node_.childKey(key));
+    if (ConfigTrace* const listening = ConfigTrace::of(node_.tree_->file))
+        listening->name(parts[at + 1], node_.node_, fmt::format(".{}", key), std::string(key));
     if (auto used = use(value); !used) fail(value.position(), used.error());
 }
 

@@ -18,6 +18,7 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -53,7 +54,8 @@ public:
     Result<bool> boolean() const;                                                     // true or false
     Result<std::string> text() const;                                                 // not empty, without control characters
     Result<std::size_t> choice(std::initializer_list<std::string_view> names) const;  // the index of the name that stands here
-    Result<std::size_t> choice(const std::vector<std::string>& names) const;
+    Result<std::size_t> choice(const std::vector<std::string>& names) const;  // names that the file itself declares
+    Result<std::size_t> word(const std::vector<std::string>& words) const;    // the program's own words
     // A path relative to the file's folder, returned joined to it. Error: absolute, or it leaves
     // the folder by "..".
     Result<std::filesystem::path> path() const;
@@ -65,6 +67,10 @@ public:
     // name given twice is refused.
     Result<std::vector<std::pair<std::string, ConfigNode>>> entries() const;
 
+    // The value of a key of a map, for who must know it before all others; nothing: there is no such
+    // key, or this is no map.
+    std::optional<ConfigNode> find(std::string_view key) const;
+
     // Whether they read the same, keys and items in the same order, wherever they stand.
     friend bool operator==(const ConfigNode& a, const ConfigNode& b);
 
@@ -74,8 +80,10 @@ private:
         : tree_(std::move(tree)), node_(node), key_(std::move(key)) {}
     ConfigNode child(std::uint32_t node, std::string key) const { return {tree_, node, std::move(key)}; }
     std::string childKey(std::string_view name) const;
+    Result<std::size_t> chosen(const std::vector<std::string>& names) const;
     std::string seen() const;              // what stands here, for a message
     const std::string* scalar() const;     // null: something else stands here
+    void trace(auto note) const;           // calls note(asked) if somebody listens (ConfigTrace)
     std::pair<int, int> position() const;  // line and column
 
     std::shared_ptr<const ConfigTree> tree_;  // null: no node yet

@@ -77,6 +77,7 @@ struct Teller {
         return fmt::format("the show goes on; {} again within {:.0f} s ends it", asked.key, seconds(asked.patience));
     }
     std::string operator()(const event::KeysAsked& asked) const { return "the keys:\n" + asked.keys; }
+    std::string operator()(const event::StateTold& told) const { return "now: " + told.lines; }
     std::string operator()(const event::FaultBegan& fault) const { return fault.what; }
     std::string operator()(const event::FaultEnded& fault) const {
         return fault.news.empty() ? "" : fmt::format("{} after {}", fault.news, durationText(fault.lasted));

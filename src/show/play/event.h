@@ -80,6 +80,10 @@ struct QuitAsked {
 struct KeysAsked {
     std::string keys;  // a line for each
 };
+// How the show is: what is dark and why, what is not well.
+struct StateTold {
+    std::string lines;
+};
 // A fault began, or its reason changed.
 struct FaultBegan {
     std::string device;  // by its name in the site file; empty: none
@@ -168,10 +172,10 @@ struct SiteNotSaved {
 };
 
 using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ListChosen, ShowResumed,
-                          ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, FaultBegan, FaultEnded,
-                          SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear,
-                          CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised, RevisionRefused, SiteChanged,
-                          SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+                          ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, StateTold, FaultBegan,
+                          FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved,
+                          MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised, RevisionRefused,
+                          SiteChanged, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -9,8 +9,8 @@ Result<std::string> readName(const ConfigNode& node) {
 }
 
 Result<DeviceConfig> readDevice(const ConfigNode& node) {
-    for (const auto& [key, value] : TRY(node.entries()))
-        if (key == "driver") return DeviceConfig{TRY(value.text()), node};
+    if (const auto driver = node.find("driver")) return DeviceConfig{TRY(driver->text()), node};
+    TRY(node.entries());  // it is a map
     return node.error("'driver' is missing: the name of the device's driver");
 }
 

@@ -140,13 +140,11 @@ Result<std::vector<SiteButton>> readButtons(const ConfigNode& node) {
 
 // Refuses the old keys, from when a site had at most one bank of each kind.
 Result<void> refuseOldBanks(const ConfigNode& root) {
-    for (const auto& [key, value] : TRY(root.entries()))
-        for (const auto& [old, members] : {std::pair("relay_bank", "relays"), std::pair("contact_bank", "contacts")})
-            if (key == old)
-                return value.error(
-                    fmt::format("there may be several now; write '{0}s: [{{name: NAME, device: ...}}]', and '{1}' "
-                                "beside it instead of in it",
-                                old, members));
+    for (const auto& [old, members] : {std::pair("relay_bank", "relays"), std::pair("contact_bank", "contacts")})
+        if (const auto value = root.find(old))
+            return value->error(fmt::format("there may be several now; write '{0}s: [{{name: NAME, device: ...}}]', and '{1}' "
+                                            "beside it instead of in it",
+                                            old, members));
     return {};
 }
 

@@ -25,7 +25,8 @@ protected:
         return std::make_unique<OperatorKeys>(
             run_.inputs, run_.events, show::ShowClock(10s, 3h), nullptr, schedule, QuitKey(quitAsks),
             OperatorKeys::Actions{[this](const Key&) { return settingUp_; }, [hasController] { return hasController; },
-                                  [this] { ++pictures_; }, [this] { ++ends_; }, [] { return "20:00  Night"; }});
+                                  [this] { ++pictures_; }, [this] { ++ends_; }, [] { return "20:00  Night"; },
+                                  [](const show::ShowState& state) { return state.cue < 0 ? "dark" : "lit"; }});
     }
     std::vector<show::Input> inputs() const {
         std::vector<show::Input> inputs;
@@ -87,6 +88,34 @@ TEST_F(Keys, load_the_cue_beside_the_one_that_go_would_enter) {
 }
 
 // Example failure: rounding makes the tenth press reach 0.99999994.
+// GO, back and load for the list that Tab has chosen; all else is for the whole show.
+TEST_F(Keys, go_to_the_list_that_was_chosen) {
+    show::CueList side = run_.cues;
+    side.name = "Bar";
+    run_.cues.sides.push_back(std::make_shared<const show::CueList>(side));
+    show::InputLog inputs(run_.cues);
+    OperatorKeys keys(inputs, run_.events, show::ShowClock(10s, 3h), nullptr, {0, false, {}}, QuitKey(false),
+                      OperatorKeys::Actions{[](const Key&) { return false; }, [] { return false; }, [] {}, [] {},
+                                            [] { return ""; }, [](const show::ShowState&) { return ""; }});
+    const Key tab{.name = Key::Name::Tab};
+    Time moment = 12s;
+    const auto press = [&](const Key& key) {
+        keys.pressedAtScreen(key, moment += 100ms);
+        keys.tick(moment);
+    };
+    for (const Key& key :
+         {tab, Key{.letter = ' '}, Key{.name = Key::Name::Down}, Key{.letter = 'b'}, Key{.letter = '0'}, tab, Key{.letter = ' '}})
+        press(key);
+    std::vector<std::pair<Kind, int>> asked;
+    auto reader = inputs.reader();
+    while (const show::LoggedInput* const logged = reader.next()) asked.emplace_back(logged->input.kind, logged->input.list);
+    EXPECT_THAT(asked, ElementsAre(std::pair(Kind::Go, 1), std::pair(Kind::Load, 1), std::pair(Kind::Back, 1),
+                                   std::pair(Kind::Blackout, 0), std::pair(Kind::Go, 0)));
+    EXPECT_EQ(keys.list(), 0);
+    EXPECT_EQ(run_.told().front(), "GO, back and load are now for 'Bar'");
+    EXPECT_EQ(run_.told().back(), "GO, back and load are now for the show's own cues");
+}
+
 TEST_F(Keys, move_the_master_by_a_tenth) {
     const auto keys = keysWith({0, false, {}});
     const auto masterAfter = [&](char letter, int presses) {
@@ -124,7 +153,8 @@ TEST_F(Keys, are_told_when_somebody_asks) {
     keys->pressedAtScreen({.letter = '/', .shift = true}, 12s);
     keys->tick(12s);
     EXPECT_THAT(inputs(), IsEmpty());
-    EXPECT_THAT(run_.told(), ElementsAre(testing::StartsWith("the keys:\n  space  GO"), "the schedule, 20:00  Night"));
+    EXPECT_THAT(run_.told(),
+                ElementsAre(testing::StartsWith("the keys:\n  space  GO"), "now: dark", "the schedule, 20:00  Night"));
 }
 
 // Example failure: the seventeenth key of somebody in a hurry does nothing.

@@ -101,6 +101,26 @@ TEST(StatusLine, says_what_the_operator_holds_and_how_to_let_it_go) {
     EXPECT_THAT(statusLine(status, 30), StartsWith("master 0 %")) << "it is dark, and this is why";
 }
 
+TEST(StatusLine, says_what_the_other_lists_do_and_which_one_has_the_keys) {
+    RunStatus status = fading();
+    status.zCamera.clear();
+    status.framesPerSecond.reset();
+    status.sides = {{.name = "Bar", .hasKeys = true, .cueName = "Warm", .nextName = "Cool", .untilNext = 90s}, {.name = "Lamps"}};
+    EXPECT_EQ(statusLine(status, 200),
+              "cue 3 of 6: Left rises  fading 4 s  next: Both in 18 s  [Bar]: Warm > Cool in 1:30 min  "
+              "Lamps: dark  48 s left  0 late");
+    EXPECT_THAT(statusLine(status, 100), HasSubstr("[Bar]: Warm  Lamps: dark"));
+    EXPECT_THAT(statusLine(status, 30), HasSubstr("[Bar]")) << "GO does not do what it seems to do";
+}
+
+TEST(StatusLine, names_what_is_not_well_for_as_long_as_it_lasts) {
+    RunStatus status = fading();
+    EXPECT_THAT(statusLine(status, 200), Not(HasSubstr("NOT WELL")));
+    status.unwell = "left, dmx";
+    EXPECT_THAT(statusLine(status, 200), HasSubstr("NOT WELL: left, dmx"));
+    EXPECT_THAT(statusLine(status, 60), HasSubstr("NOT WELL"));
+}
+
 TEST(StatusLine, before_the_first_cue_and_in_the_last) {
     RunStatus status;
     status.cues = 1;

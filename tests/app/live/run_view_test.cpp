@@ -69,5 +69,24 @@ TEST_F(View, says_what_happened_once_whoever_else_listens) {
     EXPECT_EQ(view_.at(12s, Time::max()).said, "");
 }
 
+TEST(HowItIs, says_what_is_dark_and_why_and_what_is_not_well) {
+    RunningShow run;
+    const show::Revision& revision = run.played.at(0);
+    show::ShowState state;
+    state.outputs.resize(2);
+    EXPECT_EQ(howItIs(state, revision, {}), "'left' is dark: no cue is on\n'right' is dark: no cue is on");
+    state.cue = 0;
+    state.outputs[0].layers = {{show::SourceId{0}, 1.0f}};
+    EXPECT_EQ(howItIs(state, revision, {{2s, "dmx (sacn) is missing: no route", "dmx"}}),
+              "'right' is dark: '" + revision.show.cues[0].name +
+                  "' shows nothing there, or not yet\n"
+                  "not well: dmx (sacn) is missing: no route");
+    state.outputs[1] = state.outputs[0];
+    EXPECT_EQ(howItIs(state, revision, {}), "every output shows something, and all is well");
+    state.panic = state.blackout = true;
+    EXPECT_EQ(howItIs(state, revision, {}), "everything is dark: PANIC");
+    EXPECT_EQ(namesOf({{2s, "a", "left"}, {3s, "b", "left"}, {3s, "the journal: no room", ""}}), "left, the journal");
+}
+
 }  // namespace
 }  // namespace fantascope::app
