@@ -229,6 +229,8 @@ Result<CueList> bound(const Show& show, const Site& site) {
         putLook(look, site, ignored, faults);
     }
     TRY(faults.result());
+    for (std::size_t fixture = 0; fixture < site.fixtures.size(); ++fixture)
+        list.fixtures.push_back({site.firstLevel(fixture), site.fixtures[fixture].channels.size()});
     list.windLists = boundWinds(show, site, faults);
     list.goInterval = show.goInterval;
     list.blackoutFade = show.blackoutFade;

@@ -105,12 +105,16 @@ struct CueList {
     std::string name = {};                                   // of a side
     std::optional<int> start = {};                           // of a side: entered when the main list leaves the dark
     std::vector<std::size_t> windLists =
-        {};                    // which list moves the wind of each output: 0 is this one, else the side, from 1; a missing one: 0
-    Look dark;                 // what is seen before the first cue: black pictures, levels 0, relays in their safe states
-    Time goInterval{};         // after a cue was entered, GO is ignored for this long
-    double farthestShift = 0;  // a correction that moves a corner of a projector's picture farther is ignored, pixels
-    double shiftSpeed = 1;     // of the fastest corner, pixels per second
-    Time exchangeFade{};       // from one pattern of a source to the next
+        {};             // which list moves the wind of each output: 0 is this one, else the side, from 1; a missing one: 0
+    Look dark;          // what is seen before the first cue: black pictures, levels 0, relays in their safe states
+    Time goInterval{};  // after a cue was entered, GO is ignored for this long
+    struct Levels {
+        std::size_t first = 0, count = 0;
+    };
+    std::vector<Levels> fixtures = {};  // the levels of each of Site::fixtures
+    double farthestShift = 0;           // a correction that moves a corner of a projector's picture farther is ignored, pixels
+    double shiftSpeed = 1;              // of the fastest corner, pixels per second
+    Time exchangeFade{};                // from one pattern of a source to the next
     struct {
         float least = 1;     // of the share
         double speed = 1;    // of the share, 1/s

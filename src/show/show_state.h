@@ -83,6 +83,8 @@ struct Controls {
     bool frozen = false;             // what is seen is kept, whatever the cues do
     float master = 1;                // the factor of pictures and levels that is wanted
     bool locked = false;             // nothing but darkness is taken from hand controller, contacts and windows
+    int highlight = -1;              // index into Site::fixtures of the one that is shown at full; -1: none
+    bool solo = false;               // nothing is shown but that one
     std::vector<ListPlace> sides{};  // of each list that plays beside the main one
     friend bool operator==(const Controls&, const Controls&) = default;
 };

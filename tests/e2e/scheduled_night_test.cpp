@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,6 +83,20 @@ TEST_F(ScheduledNight, plays_what_its_table_says) {
     // On a Saturday the bells come in between, and nothing ends them before noon.
     EXPECT_EQ(nights[1]["cues"][1]["cue"], "Bells");
     EXPECT_THAT(playedFrom("2026-12-05 20:03", "300"), ElementsAre(entered("Off", 0), entered("Red", 20), entered("Bells", 60)));
+}
+
+// FANTASCOPE_NIGHT=28800 plays eight hours twice.
+// Example failure: the machine's own clock gets into a journal.
+TEST_F(ScheduledNight, leaves_the_same_journal_each_time) {
+    const char* const wanted = std::getenv("FANTASCOPE_NIGHT");
+    const std::string length = wanted != nullptr ? wanted : "400";
+    for (const char* const journal : {"one", "two"})
+        ASSERT_THAT(run({"rehearse", ".", "--site", ".", "--at", "2026-12-04 19:59", "--seconds", length, "--as-fast-as-possible",
+                         "--journal", journal}),
+                    exits(0));
+    const std::string journal = contentsOf(folder_ / "one" / "journal");
+    EXPECT_THAT(journal, HasSubstr("cue 1 of 3: Red"));
+    EXPECT_TRUE(journal == contentsOf(folder_ / "two" / "journal"));
 }
 
 // A machine that boots in the middle of a night, with nobody to press anything.

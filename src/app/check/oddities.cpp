@@ -1,6 +1,7 @@
 #include "app/check/oddities.h"
 
 #include "pattern/shape/shape_pattern.h"
+#include "show/names.h"
 
 #include "core/config/config.h"
 #include "core/fit.h"
@@ -156,6 +157,18 @@ void noteUnnamed(const show::Show& show, const show::Site& site, std::vector<std
     if (!unnamed.empty())
         oddities.push_back(fmt::format("{}: no look names these things of {}: {}; they stay dark, and relays safe",
                                        show.file.string(), site.file.string(), listed(unnamed)));
+}
+
+void noteLists(const show::Show& show, const show::Site& site, std::vector<std::string>& oddities) {
+    const std::vector<std::string> sides = show::namesOf(show.sides);
+    const auto note = [&](const std::string& thing, const std::string& list) {
+        if (show::listNamed(list, sides) < 0)
+            oddities.push_back(fmt::format("{}: {} is for the list '{}', which {} does not have: it does nothing",
+                                           site.file.string(), thing, list, show.file.string()));
+    };
+    for (const show::SiteButton& button : site.buttons)
+        note(fmt::format("button {} ({})", button.number, show::nameOf(button.button)), button.list);
+    for (const show::Contact& contact : site.contacts) note(fmt::format("contact '{}'", contact.name), contact.list);
 }
 
 void noteGaps(const show::Site& site, std::vector<std::string>& oddities) {

@@ -30,6 +30,8 @@ void noteNegatives(const show::Source& source, std::vector<std::string>& odditie
 void noteUnseen(const show::Show& show, std::vector<std::string>& oddities);
 // Outputs, fixtures and relays of the site that no look of the show names.
 void noteUnnamed(const show::Show& show, const show::Site& site, std::vector<std::string>& oddities);
+// Buttons and contacts of the site for lists that the show does not have.
+void noteLists(const show::Show& show, const show::Site& site, std::vector<std::string>& oddities);
 // Places of a canvas that no output's part shows.
 void noteGaps(const show::Site& site, std::vector<std::string>& oddities);
 // A schedule that plays nothing.

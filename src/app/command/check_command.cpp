@@ -103,6 +103,7 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
     if (site) {
         noteShapes(cues, shaped, *site, finding.oddities);
         noteUnnamed(show, *site, finding.oddities);
+        noteLists(show, *site, finding.oddities);
         finding.summary += fmt::format(", plays on {}", site->file.string());
     }
     return finding;

@@ -75,10 +75,12 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         case Action::Dimmer:
         case Action::Brighter:
             return dim(input, *action == Action::Brighter ? 1 : -1);
+        case Action::Highlight:
+            return highlight(input);
+        case Action::Solo:
         case Action::Corrections:
-            return toggle(Kind::Corrections);
         case Action::Lock:
-            return toggle(Kind::Lock);
+            return toggle(*action == Action::Solo ? Kind::Solo : *action == Action::Lock ? Kind::Lock : Kind::Corrections);
         case Action::Pictures:
             return actions_.takePictures();
         case Action::Keys:
@@ -118,6 +120,15 @@ void OperatorKeys::chooseList(Time at) {
     if (sides.empty()) return;
     list_ = (list_ + 1) % (static_cast<int>(sides.size()) + 1);
     events_.append({at, show::event::ListChosen{list_ == 0 ? "" : sides[static_cast<std::size_t>(list_) - 1]->name}});
+}
+
+// The next lamp; after the last one none.
+void OperatorKeys::highlight(show::Input input) {
+    replica_.stateAt(input.at, state_);
+    const int count = static_cast<int>(replica_.playback().cues().fixtures.size());
+    input.kind = Kind::Highlight;
+    input.fixture = state_.highlight + 1 < count ? state_.highlight + 1 : -1;
+    inputs_.submit(input);
 }
 
 void OperatorKeys::dim(show::Input input, int step) {

@@ -28,6 +28,8 @@ struct RunKey {
         Restore,
         Dimmer,
         Brighter,
+        Highlight,
+        Solo,
         Pictures,
         SetUp,
         Corrections,
@@ -42,7 +44,7 @@ struct RunKey {
 };
 
 // All keys. README.md has the same table.
-constexpr std::array<RunKey, 18> kRunKeys = {
+constexpr std::array<RunKey, 20> kRunKeys = {
     {{letterKey(' '), "space", "GO: the loaded cue, or the next one; after a pause: go on", RunKey::Action::Go},
      {letterKey('b'), "b", "back: the cue before", RunKey::Action::Back},
      {{Key::Name::Up}, "up", "load the cue before the one that GO would enter", RunKey::Action::LoadPrevious},
@@ -55,6 +57,8 @@ constexpr std::array<RunKey, 18> kRunKeys = {
      {letterKey('r'), "r", "restore after a panic: everything goes on from where it was", RunKey::Action::Restore},
      {letterKey('-'), "-", "master: 10 % darker", RunKey::Action::Dimmer},
      {letterKey('+'), "+", "master: 10 % brighter", RunKey::Action::Brighter},
+     {letterKey('h'), "h", "highlight: the next lamp at full, after the last one none", RunKey::Action::Highlight},
+     {letterKey('o'), "o", "solo: nothing but that lamp; again: all", RunKey::Action::Solo},
      {letterKey('s'), "s", "take a picture of every output", RunKey::Action::Pictures},
      {letterKey('e'), "e", "set the outputs up; again: done", RunKey::Action::SetUp},
      {letterKey('c'), "c", "take the camera's corrections back; again: allow them", RunKey::Action::Corrections},

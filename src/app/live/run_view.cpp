@@ -45,6 +45,8 @@ RunStatus RunView::at(Time moment, Time nextGo, int list) {
         if (next) told.nextName = sideList.cues[static_cast<std::size_t>(*next)].name;
         told.untilNext = replica_.playback().untilFollowAt(time, which);
     }
+    if (state_.highlight >= 0)
+        status.highlighted = show_.at(state_.revision).site.fixtures[static_cast<std::size_t>(state_.highlight)].name;
     status.controls = state_;
     if (hasNews()) status.said = std::exchange(news_, {});
     return status;

@@ -19,7 +19,7 @@ struct RedrawnPattern {
     std::size_t made = 0, removed = 0, changed = 0;  // instances
     double toneBefore = 0, toneAfter = 0;            // difference from the drawing, seen from afar, of full light
 
-    static constexpr Time kSearch = std::chrono::milliseconds(1200);
+    static constexpr Time kSearch = std::chrono::seconds(1);
     // `shown`: its guide is the drawing that was saved. Error: the drawing cannot be read or has
     // another shape, or the pattern was not compared in light.
     static Result<RedrawnPattern> of(const pattern::ShapePattern& shown);

@@ -71,13 +71,20 @@ void ShowReload::tick(Time moment) {
         waits_.reset();
         if (outcome->empty()) return takeOver(std::move(reading), showTime);
         stock_.ask(sources_);
-        return refuse(reading.files, *outcome, showTime);
+        return refuse(reading.saved, *outcome, showTime);
     }
     Paths saved = files_.saved();
     if (saved.erase(show_.newest().site.file) > 0) tellOfSite(showTime);
+    if (refused_ && (!saved.empty() || showTime >= refused_->again)) saved.insert(refused_->saved.begin(), refused_->saved.end());
     if (saved.empty()) return;
     auto reading = read(saved);
-    if (!reading) return refuse(namesOf(saved), reading.error().message(), showTime);
+    if (!reading) {
+        const std::string why = reading.error().message();
+        if (!refused_ || refused_->why != why) refuse(saved, why, showTime);
+        refused_ = Refused{saved, why, showTime + kRetry};
+        return;
+    }
+    refused_.reset();
     stock_.ask(reading->sources);
     waits_ = std::move(*reading);
 }
@@ -115,7 +122,7 @@ Result<render::PictureSource> ShowReload::readSource(const show::Source& source,
 }
 
 Result<ShowReload::Reading> ShowReload::read(const Paths& saved) {
-    Reading reading{.revision = {}, .sources = {}, .names = names_, .files = namesOf(saved), .news = {}};
+    Reading reading{.revision = {}, .sources = {}, .names = names_, .saved = saved, .news = {}};
     const show::Revision& now = show_.newest();
     show::Show show = TRY(readShow(saved, reading.names));
     if (!std::ranges::equal(show.sides, now.show.sides, {}, &show::SideList::name, &show::SideList::name))
@@ -147,18 +154,18 @@ void ShowReload::takeOver(Reading reading, Time showTime) {
     });
     if (!isTaken) {
         stock_.ask(sources_);
-        return refuse(reading.files, std::string(show::nameOf(outcome)), showTime);
+        return refuse(reading.saved, std::string(show::nameOf(outcome)), showTime);
     }
     sources_ = std::move(reading.sources);
     names_ = std::move(reading.names);
     patterns_.clear();
     readPatterns();
     watchFiles();
-    events_.append({showTime, show::event::ShowRevised{std::move(reading.files), std::move(reading.news)}});
+    events_.append({showTime, show::event::ShowRevised{namesOf(reading.saved), std::move(reading.news)}});
 }
 
-void ShowReload::refuse(const std::string& files, const std::string& why, Time showTime) {
-    events_.append({showTime, show::event::RevisionRefused{files, why}});
+void ShowReload::refuse(const Paths& files, const std::string& why, Time showTime) {
+    events_.append({showTime, show::event::RevisionRefused{namesOf(files), why}});
 }
 
 void ShowReload::tellOfSite(Time showTime) {
@@ -168,7 +175,7 @@ void ShowReload::tellOfSite(Time showTime) {
     const fs::path& file = show_.newest().site.file;
     if (isOurs) return;
     if (const auto site = show::readSite(file); !site)
-        refuse(file.filename().string(), site.error().message(), showTime);
+        refuse({file}, site.error().message(), showTime);
     else
         events_.append({showTime, show::event::SiteChanged{file}});
 }

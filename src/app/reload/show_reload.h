@@ -32,8 +32,8 @@ namespace fantascope::app {
 // source whose entry or file has changed is another source from then on, with an id of its own. The
 // renderers are made ready for it (SourceStock), and only then the input comes that continues with
 // the new cue list: what is seen fades from the old source to the new one (CuePlayer). If anything
-// is wrong, the operator is told why and where, and the show goes on as it was, until the next
-// save.
+// is wrong, the operator is told why and where, and the show goes on as it was. What cannot be read
+// is read again every kRetry: a file that it names may only be on its way.
 //
 // Where the drawing of a light pattern was saved, and not the pattern, the pattern is drawn again
 // from where it is (RedrawnPattern). That lasts until the show ends; the pattern's file stays.
@@ -49,7 +49,8 @@ public:
     ShowReload(show::PlayedShow& show, const show::SourceNames& names, Read read, SourceStock& stock, show::InputLog& inputs,
                show::EventLog& events, const show::ShowClock& showClock);
 
-    static constexpr double kRate = 4;  // Hz; a file must stay the same from one look to the next
+    static constexpr double kRate = 10;  // Hz; a file must stay the same from one look to the next
+    static constexpr Time kRetry = std::chrono::seconds(2);
     void tick(Time moment);
 
 private:
@@ -59,13 +60,13 @@ private:
         std::shared_ptr<const show::Revision> revision;
         SourceStock::Sources sources;
         show::SourceNames names;
-        std::string files;  // that were saved
-        std::string news;   // of patterns that were drawn again
+        Paths saved;
+        std::string news;  // of patterns that were drawn again
     };
     Result<Reading> read(const Paths& saved);
     Result<show::Show> readShow(const Paths& saved, show::SourceNames& names) const;
     void takeOver(Reading reading, Time showTime);
-    void refuse(const std::string& files, const std::string& why, Time showTime);
+    void refuse(const Paths& files, const std::string& why, Time showTime);
     void tellOfSite(Time showTime);
     Result<render::PictureSource> readSource(const show::Source& source, const Paths& saved, Reading& reading) const;
     bool isRedrawn(const show::Source& source, const Paths& saved) const;
@@ -83,6 +84,13 @@ private:
     SourceStock::Sources sources_;                                                  // of that
     std::map<std::string, std::shared_ptr<const pattern::ShapePattern>> patterns_;  // as they are shown, by source
     std::optional<Reading> waits_;                                                  // for the renderers
+    // What was saved and could not be read.
+    struct Refused {
+        Paths saved;
+        std::string why;
+        Time again{};  // show time
+    };
+    std::optional<Refused> refused_;
     FileWatch files_;
 };
 

@@ -13,17 +13,23 @@
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 18> kKinds = {"go",     "back",    "jump",     "blackout",    "dark",    "light",
-                                                     "revise", "correct", "exchange", "corrections", "trim",    "lock",
-                                                     "load",   "pause",   "freeze",   "panic",       "restore", "master"};
+constexpr std::array<std::string_view, 20> kKinds = {
+    "go",   "back", "jump", "blackout", "dark",   "light", "revise",  "correct", "exchange",  "corrections",
+    "trim", "lock", "load", "pause",    "freeze", "panic", "restore", "master",  "highlight", "solo"};
 constexpr std::array<std::string_view, 9> kSources = {"start",    "controller", "contact", "terminal", "screen",
                                                       "schedule", "camera",     "journal", "file"};
-static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Master) + 1);
+static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Solo) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::File) + 1);
 
 constexpr std::string_view kList = "list", kLate = "late";
 
-bool hasRevision(Input::Kind kind) { return kind == Input::Kind::Revise || kind == Input::Kind::Exchange; }
+// The number that says what an input is about.
+template <class AnyInput>
+auto& subjectOf(AnyInput& input) {
+    if (input.kind == Input::Kind::Highlight) return input.fixture;
+    const bool hasRevision = input.kind == Input::Kind::Revise || input.kind == Input::Kind::Exchange;
+    return hasRevision ? input.revision : input.cue;
+}
 
 std::vector<std::string_view> wordsOf(std::string_view line) {
     std::vector<std::string_view> words;
@@ -94,6 +100,8 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: there is no such cue list";
         case Outcome::OtherLists:
             return "ignored: it has other cue lists; end the show and begin it anew";
+        case Outcome::NoSuchFixture:
+            return "ignored: there is no such lamp, or none is highlighted";
     }
     return "unknown";
 }
@@ -102,8 +110,8 @@ std::string_view nameOf(Input::Kind kind) { return kKinds[static_cast<std::size_
 std::string_view nameOf(Input::Source source) { return kSources[static_cast<std::size_t>(source)]; }
 
 std::string lineOf(const Input& input) {
-    std::string line = fmt::format("{} {} {} {} {}", input.at.count(), nameOf(input.kind),
-                                   hasRevision(input.kind) ? input.revision : input.cue, nameOf(input.source), input.which);
+    std::string line =
+        fmt::format("{} {} {} {} {}", input.at.count(), nameOf(input.kind), subjectOf(input), nameOf(input.source), input.which);
     if (input.kind == Input::Kind::Correct)
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
     if (input.kind == Input::Kind::Jump && input.ago != Time{}) line += fmt::format(" {}", input.ago.count());
@@ -132,7 +140,7 @@ Result<Input> inputOf(std::string_view line) {
     if (words.size() != wanted) return Error(fmt::format("an input has {} words, here are {}", wanted, words.size()));
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
-    (hasRevision(input.kind) ? input.revision : input.cue) = TRY(numberOf<int>(words[2]));
+    subjectOf(input) = TRY(numberOf<int>(words[2]));
     input.source = TRY(choiceOf<Input::Source>(words[3], kSources));
     input.which = TRY(numberOf<int>(words[4]));
     if (input.kind == Input::Kind::Correct)

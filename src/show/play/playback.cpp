@@ -73,6 +73,9 @@ Outcome Playback::take(const Input& input, Time at, std::shared_ptr<const CueLis
             if (!(input.level >= 0 && input.level <= 1)) return Outcome::NoSuchLevel;
             master_.want(input.level, at, list.blackoutFade);
             return Outcome::Taken;
+        case Input::Kind::Highlight:
+        case Input::Kind::Solo:
+            return focus(input, list, at);
         case Input::Kind::Revise:
             return revise(std::move(revision), at);
         case Input::Kind::Correct:
@@ -126,7 +129,10 @@ Outcome Playback::moveOn(const Input& input, Time at) {
         wanted = input.cue;
     }
     if (paused_.last()) letGoOn(at);
-    if (wanted == kNoCue && input.list == 0) frozen_.set(at, nullptr);  // a freeze must not keep the light on
+    if (wanted == kNoCue && input.list == 0) {  // nothing must keep the light on
+        frozen_.set(at, nullptr);
+        endFocus(at);
+    }
     played.loaded.set(at, kNoCue);
     takeBackSides(cueTime_.at(at));
     played.player.enter(*wanted, cueTime_.at(at), input.kind == Input::Kind::Jump ? input.ago : Time{});
@@ -148,6 +154,7 @@ Outcome Playback::hold(Input::Kind kind, Time at) {
         panic_.want(1, at, now.list->blackoutFade);
         if (!paused_.last()) letGoOn(at);
     } else if (kind == Input::Kind::Panic) {
+        endFocus(at);
         panic_.want(0, at, isPanicAt(at) ? Time{} : now.list->panicFade);
         trims_.releaseRelays(at);
         cueTime_.stand(at);
@@ -162,6 +169,32 @@ Outcome Playback::hold(Input::Kind kind, Time at) {
         cueTime_.stand(at);
     }
     return Outcome::Taken;
+}
+
+// Shows a lamp, or it alone, for who focuses it.
+Outcome Playback::focus(const Input& input, const CueList& list, Time at) {
+    if (isPanicAt(at)) return Outcome::Panicked;
+    if (input.kind == Input::Kind::Solo) {
+        if (highlight_.last() < 0) return Outcome::NoSuchFixture;
+        solo_.set(at, !solo_.last());
+        return Outcome::Taken;
+    }
+    if (input.fixture < -1 || input.fixture >= static_cast<int>(list.fixtures.size())) return Outcome::NoSuchFixture;
+    highlight_.set(at, input.fixture);
+    if (input.fixture < 0) solo_.set(at, false);
+    return Outcome::Taken;
+}
+
+void Playback::endFocus(Time at) {
+    highlight_.set(at, -1);
+    solo_.set(at, false);
+}
+
+void Playback::showFocus(const CueList& list, ShowState& out) const {
+    if (out.highlight < 0) return;
+    if (out.solo) dim(out, 0);
+    const auto [first, count] = list.fixtures[static_cast<std::size_t>(out.highlight)];
+    std::ranges::fill(std::span(out.levels).subspan(first, count), 1.0f);
 }
 
 // Keeps what is seen, or shows the cues again.
@@ -212,6 +245,8 @@ void Playback::foresee(Time time) {
     frozen_.forget(kept);
     taken_.forget(kept);
     revisions_.forget(kept);
+    solo_.forget(kept);
+    highlight_.forget(kept);
     shifts_.forget(kept);
     trims_.forget(kept);
 }
@@ -314,6 +349,9 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.master = master_.wantedAt(time);
     out.locked = locked_.at(time);
     if (const float light = blackout_.at(time) * panic_.at(time) * master_.at(time); light < 1) dim(out, light);
+    out.highlight = highlight_.at(time);
+    out.solo = solo_.at(time);
+    showFocus(*entry.list, out);
     out.inputs = taken_.at(time);
     out.revision = revisions_.at(time);
 }

@@ -44,6 +44,8 @@ namespace fantascope::show {
 //   everything goes on from where it was.
 // - The master dims pictures and levels, on top of blackout and panic. From full to none it takes
 //   `blackoutFade`.
+// - A highlight shows one fixture at full, also in a blackout, and a solo nothing but that one: for
+//   focusing. A panic ends both, and so does the dark before the first cue.
 // - A late input is ignored, so that a machine that was busy does not fire what was pressed meanwhile
 //   in a burst. Only darkness comes however late it is; a late toggle of the blackout never ends it.
 // - A lock ignores what comes from the hand controller, a contact or a window, but for blackout,
@@ -130,6 +132,9 @@ private:
     void bring(Time at, const CuePlayer::Brought& brought);
     void takeBackSides(Time time);
     void freeze(Time at);
+    Outcome focus(const Input& input, const CueList& list, Time at);
+    void endFocus(Time at);
+    void showFocus(const CueList& list, ShowState& out) const;
     bool isPanicAt(Time time) const { return panic_.wantedAt(time) < 1; }
     static bool isTooLate(const Input& input);
     bool isLockedOut(const Input& input, Time at) const;
@@ -141,7 +146,8 @@ private:
     CueTime cueTime_;
     Dimmer blackout_, panic_, master_;
     Steps<std::shared_ptr<const Frozen>> frozen_;  // null: nothing is frozen
-    Steps<bool> paused_, locked_, corrects_{true};
+    Steps<bool> paused_, locked_, corrects_{true}, solo_;
+    Steps<int> highlight_{-1};
     ShiftCourses shifts_;
     PatternCourses patterns_;
     TrimCourses trims_;

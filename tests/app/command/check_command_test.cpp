@@ -101,6 +101,28 @@ cues: [{name: Before, look: glow, fade: 1}, {name: Glow, look: glow, fade: 1, wa
     EXPECT_EQ(std::ranges::count(lines, '\n'), 10) << lines;
 }
 
+// Lists of the show, and buttons of the site for them.
+TEST(Check, looks_into_every_list_and_for_the_lists_of_buttons) {
+    const ScratchFolder folder;
+    const std::string lists =
+        "lists: {Bar: {start: b, cues: [{name: a, look: glow, fade: 1}, {name: b, look: warm, wait: 5, fade: 1, follow: 2}, "
+        "{name: c, look: glow, fade: 1}]}}\ncues: ";
+    std::string text = replaced(replaced(std::string(kShow), "version: 1", "version: 2"), "cues: ", lists);
+    text = replaced(text, "looks: {", "looks: {warm: {fixtures: {lamp: 0.5}}, ");
+    const auto show = folder.file("show.yaml", text);
+    const auto site =
+        folder.file("site.yaml", std::string(kSite) +
+                                     "cue_controller: {device: {driver: simulated}, buttons: {go: 1, lists: {Bar: {go: 2}, "
+                                     "Baar: {go: 3}}}}\n");
+    const Checked checked = check(folder, {{show}, site});
+    EXPECT_EQ(checked.refusal, "");
+    EXPECT_THAT(checked.lines, HasSubstr("the show starts with 'b', so GO never reaches the cue 'a' before it"));
+    EXPECT_THAT(checked.lines, HasSubstr("the cue 'b' waits 5 s, and the next one follows after 2 s"));
+    EXPECT_THAT(checked.lines, HasSubstr("button 3 (go) is for the list 'Baar', which show.yaml does not have: it does nothing"));
+    EXPECT_EQ(checked.lines.find("no cue has the look 'warm'"), std::string::npos) << "a list has it";
+    EXPECT_EQ(checked.lines.find("'Bar', which"), std::string::npos);
+}
+
 TEST(Check, of_a_schedule_needs_the_site_s_place_and_notes_one_that_plays_nothing) {
     const ScratchFolder folder;
     const auto show = folder.file("show.yaml", replaced(std::string(kShow), "version: 1\ntitle: Test",

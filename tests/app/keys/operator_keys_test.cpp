@@ -116,6 +116,22 @@ TEST_F(Keys, go_to_the_list_that_was_chosen) {
     EXPECT_EQ(run_.told().back(), "GO, back and load are now for the show's own cues");
 }
 
+TEST_F(Keys, highlight_one_lamp_after_the_other) {
+    const auto keys = keysWith({0, false, {}});
+    Time moment = 12s;
+    const auto pressed = [&](char letter) {
+        keys->pressedAtScreen({.letter = letter}, moment += 100ms);
+        keys->tick(moment);
+        return inputs().back();
+    };
+    const int count = static_cast<int>(run_.site.fixtures.size());
+    ASSERT_GT(count, 0);
+    for (int fixture = 0; fixture < count; ++fixture) EXPECT_EQ(pressed('h').fixture, fixture);
+    EXPECT_EQ(pressed('o').kind, Kind::Solo);
+    EXPECT_EQ(pressed('h').fixture, -1) << "after the last one none";
+    EXPECT_EQ(pressed('h').fixture, 0);
+}
+
 TEST_F(Keys, move_the_master_by_a_tenth) {
     const auto keys = keysWith({0, false, {}});
     const auto masterAfter = [&](char letter, int presses) {

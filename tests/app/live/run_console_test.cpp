@@ -113,6 +113,15 @@ TEST(StatusLine, says_what_the_other_lists_do_and_which_one_has_the_keys) {
     EXPECT_THAT(statusLine(status, 30), HasSubstr("[Bar]")) << "GO does not do what it seems to do";
 }
 
+TEST(StatusLine, says_which_lamp_is_highlighted_or_alone_and_how_to_go_on) {
+    RunStatus status = fading();
+    status.highlighted = "gate";
+    EXPECT_THAT(statusLine(status, 200), StartsWith("HIGHLIGHT gate, h goes on from it  cue 3 of 6"));
+    status.controls.solo = true;
+    EXPECT_THAT(statusLine(status, 200), StartsWith("SOLO gate, o ends it"));
+    EXPECT_THAT(statusLine(status, 40), HasSubstr("SOLO gate"));
+}
+
 TEST(StatusLine, names_what_is_not_well_for_as_long_as_it_lasts) {
     RunStatus status = fading();
     EXPECT_THAT(statusLine(status, 200), Not(HasSubstr("NOT WELL")));

@@ -165,10 +165,26 @@ TEST_F(SavedShow, is_refused_with_its_place_and_taken_once_it_is_mended) {
     folder_.file("poster.png", "no picture");
     pass(1s);
     EXPECT_THAT(told().back(), HasSubstr("poster.png was saved, but the show goes on as it was: "));
+    EXPECT_TRUE(writePng(folder_ / "poster.png", filled({0, 0, 255})));
+    pass(1s);
     save("{wall: [{source: paint}]}", "{wal: [{source: paint}]}");
     pass(1s);
     EXPECT_THAT(told().back(), HasSubstr("did you mean 'wall'?"));
     EXPECT_EQ(loop_->framesLate(), 0);
+}
+
+// A show is copied over the running one, and its pictures come last.
+TEST_F(SavedShow, is_read_again_until_what_it_names_is_there) {
+    go();
+    pass(1s);
+    save("{solid: [1, 0, 0]}", "{image: new.png}");
+    pass(5s);
+    const auto refused = told();
+    ASSERT_EQ(refused.size(), 1u) << "it is told once";
+    EXPECT_THAT(refused[0], HasSubstr("there is no file new.png"));
+    ASSERT_TRUE(writePng(folder_ / "new.png", filled({0, 255, 0})));
+    pass(5s);
+    EXPECT_EQ(wall_, (Rgba8{0, 255, 0}));
 }
 
 // An artist draws on while the pattern is on the wall.

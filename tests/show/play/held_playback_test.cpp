@@ -236,5 +236,39 @@ TEST(HeldPlayback, of_a_million_inputs_it_keeps_ten_minutes) {
     EXPECT_LT(::mallinfo2().uordblks, kept + 100'000);
 }
 
+// For the technician on the ladder, while the show runs.
+TEST(HeldPlayback, a_highlight_shows_a_lamp_and_a_solo_nothing_else) {
+    CueList list = cues();
+    list.fixtures = {{0, 1}, {1, 1}};
+    const auto highlight = [](Time at, int fixture) { return Input{.at = at, .kind = Kind::Highlight, .fixture = fixture}; };
+    Playback playback =
+        show::after(list, {{0s, Kind::Go}, highlight(3s, 1), {5s, Kind::Solo}, {7s, Kind::Dark}, {8s, Kind::Solo}});
+    EXPECT_THAT(stateOf(playback, 4s).levels, ElementsAre(1, 1));
+    EXPECT_EQ(stateOf(playback, 4s).highlight, 1);
+    EXPECT_THAT(stateOf(playback, 6s).levels, ElementsAre(0, 1));
+    EXPECT_THAT(stateOf(playback, 6s).outputs[0].layers, IsEmpty());
+    EXPECT_THAT(stateOf(playback, 6s).relays, ElementsAre(0)) << "lamps of the street stay as the cue has them";
+    EXPECT_THAT(stateOf(playback, 9s).levels, ElementsAre(0, 1)) << "in a blackout, too";
+    EXPECT_THAT(stateOf(playback, 2s).levels, ElementsAre(1, 0)) << "the past does not change";
+    ASSERT_EQ(playback.apply(highlight(9s, -1)), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 9s).levels, ElementsAre(0, 0));
+    EXPECT_EQ(playback.apply({9s, Kind::Solo}), Outcome::NoSuchFixture) << "nobody would know of which lamp";
+    EXPECT_EQ(playback.apply(highlight(9s, 2)), Outcome::NoSuchFixture);
+}
+
+TEST(HeldPlayback, a_panic_and_the_end_of_the_night_end_a_highlight) {
+    CueList list = cues();
+    list.fixtures = {{0, 1}, {1, 1}};
+    const Input highlight{.at = 3s, .kind = Kind::Highlight, .fixture = 1};
+    Playback panic = show::after(list, {{0s, Kind::Go}, highlight, {3s, Kind::Solo}, {4s, Kind::Panic}});
+    EXPECT_THAT(stateOf(panic, 10s).levels, ElementsAre(0, 0));
+    EXPECT_EQ(panic.apply({.at = 11s, .kind = Kind::Highlight, .fixture = 0}), Outcome::Panicked);
+    panic.apply({12s, Kind::Restore});
+    EXPECT_THAT(stateOf(panic, 13s).levels, ElementsAre(1, 0));
+    Playback end = show::after(list, {{0s, Kind::Go}, highlight, {.at = 4s, .kind = Kind::Jump, .cue = -1}});
+    EXPECT_THAT(stateOf(end, 10s).levels, ElementsAre(0, 0));
+    EXPECT_EQ(stateOf(end, 10s).highlight, -1);
+}
+
 }  // namespace
 }  // namespace fantascope::show
