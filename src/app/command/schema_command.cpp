@@ -17,7 +17,7 @@ struct Options {
 
 void declare(Command& command, Options& options) {
     command.add("kind", options.kind, "the kind of file: show or site").required();
-    command.add("-o,--output", options.output, "write the schema to this JSON file (default: print it)");
+    command.add("-o,--out", options.output, "write the schema to this JSON file (default: print it)");
 }
 
 Result<void> schema(const Options& options) {
