@@ -325,7 +325,7 @@ private:
     }
     void run(bool runs) {
         if (runs_.back().runs == runs) return;
-        runs_.push_back({newest_, cueTime(newest_), runs});
+        runs_.push_back({newest_, cueTime(newest_) + (runs ? 1ns : 0ns), runs});  // after all that was seen meanwhile
         if (runs) wentOn_ = newest_;
     }
     Time cueTime(Time time) const {
@@ -511,16 +511,10 @@ void compare(const Playback& playback, const Model& model, const CueList& list, 
     for (std::size_t i = 0; i < kRelays; ++i) {
         const auto move = [&](const CueList::Cue& cue) { return moveOfRelay(cue, i); };
         const float dark = list.dark.relays[i];
-        // Each pause makes cue time a nanosecond longer, so of lists that switch at one moment either
-        // may be the last.
-        std::vector<Model::Value> values;
-        for (std::size_t side = 0; side < lists; ++side) values.push_back(model.valueAt(time, side, dark, move));
-        const Time last = std::ranges::max(values, {}, &Model::Value::since).since;
-        if (last == Time::min()) values.resize(1);  // none says anything: as the main list has it
-        const auto isLast = [&](const Model::Value& value) {
-            return (last == Time::min() || last - 1us <= value.since) && float(state.relays[i]) == value.value;
-        };
-        RC_ASSERT((model.isPanic(time) ? float(state.relays[i]) == dark : std::ranges::any_of(values, isLast)));
+        Model::Value last = model.valueAt(time, 0, dark, move);
+        for (std::size_t side = 1; side < lists; ++side)
+            if (const auto value = model.valueAt(time, side, dark, move); value.since > last.since) last = value;
+        RC_ASSERT(float(state.relays[i]) == (model.isPanic(time) ? dark : last.value));
     }
     for (std::size_t output = 0; output < kOutputs; ++output)
         for (std::uint32_t source = 0; source < kSources; ++source) {
