@@ -65,6 +65,7 @@ namespace {
 std::string darknessOf(const show::ShowState& state) {
     if (state.panic) return "everything is dark: PANIC";
     if (state.blackout) return "pictures and lamps are dark: BLACKOUT";
+    if (state.solo) return "everything but one lamp is dark: SOLO";
     if (state.master == 0) return "pictures and lamps are dark: the master is at 0";
     return "";
 }

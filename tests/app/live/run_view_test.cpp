@@ -83,6 +83,8 @@ TEST(HowItIs, says_what_is_dark_and_why_and_what_is_not_well) {
                   "not well: dmx (sacn) is missing: no route");
     state.outputs[1] = state.outputs[0];
     EXPECT_EQ(howItIs(state, revision, {}), "every output shows something, and all is well");
+    state.solo = true;
+    EXPECT_EQ(howItIs(state, revision, {}), "everything but one lamp is dark: SOLO");
     state.panic = state.blackout = true;
     EXPECT_EQ(howItIs(state, revision, {}), "everything is dark: PANIC");
     EXPECT_EQ(namesOf({{2s, "a", "left"}, {3s, "b", "left"}, {3s, "the journal: no room", ""}}), "left, the journal");
