@@ -44,8 +44,10 @@ std::string ShowCaller::nextDay() const {
 
 void ShowCaller::tick(Time moment) {
     const auto still = show_.still();
+    const show::Revision& newest = show_.newest();
+    if (!newest.nights && !revision_->nights) return;
     const Time utc = wall_.now().utc, showTime = showClock_.showTime(moment);
-    if (const show::Revision& newest = show_.newest(); &newest != revision_) follow(newest, utc);
+    if (&newest != revision_) follow(newest, utc);
     if (!revision_->nights) return;
     const Nights& nights = *revision_->nights;
     tellOfClock(utc, moment);
