@@ -128,7 +128,7 @@ const std::vector<Row> kTable = {
     {"app/journal", {"core", "drivers/common", "show"}, {}, {"POSIX"}},
     {"app/check", {"core", "media", "pattern/shape", "show"}, {}, {}},
     {"app/schedule", {"app/base", "core", "show"}, {}, {}},
-    {"app/schema", {"app/base", "app/site", "core", "show"}, {}, {"POSIX"}},
+    {"app/schema", {"app/base", "app/site", "core", "show"}, {}, {}},
     {"app/reload", {"core", "media", "pattern", "render", "show"}, {}, {}},
     {"app/live",
      {"app/base", "app/journal", "app/keys",       "app/reload",     "app/schedule",  "app/site",      "app/watch",

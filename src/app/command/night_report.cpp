@@ -105,7 +105,8 @@ plot::Night readNight(const Report& report) {
         night.faults.push_back({textOf(valueOf(fault, "device")), fault.at("what").get<std::string>(),
                                 fault.at("at").get<double>(), numberOf(valueOf(fault, "until"))});
     for (const Report& cue : valueOf(report, "cues"))
-        night.cues.push_back({cue.at("name").get<std::string>(), cue.at("entered").get<double>()});
+        if (!cue.contains("list"))  // of the show's own cues
+            night.cues.push_back({cue.at("name").get<std::string>(), cue.at("entered").get<double>()});
     night.otherLight = otherLightOf(valueOf(report, "lamps"));
     night.actions = actionsOf(report);
     night.outputs = outputsOf(report, night.causes);

@@ -1,5 +1,6 @@
 #include "app/lens/simulated_hand.h"
 
+#include "app/base/temporary_folder.h"
 #include "app/site/site_models.h"
 #include "drivers/site/simulated_site.h"
 #include "drivers/site/world.h"
@@ -13,12 +14,10 @@
 #include <glm/mat3x3.hpp>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 
 namespace fantascope::app {
@@ -34,28 +33,6 @@ constexpr double kLux = 300, kReflectance = 0.8;  // a room by day, and white pa
 constexpr double kHighlight = 1.4;                // full white, as a multiple of the paper's luminance
 constexpr glm::ivec2 kMargins{2, 2};              // of paper around the board, squares, both sides together
 constexpr const char* kPicture = "board.png";
-
-// A folder of its own for the board's picture, which a scene reads from a file.
-class Folder {
-public:
-    static Result<Folder> make() {
-        std::error_code failed;
-        std::string name = (fs::temp_directory_path(failed) / "fantascope-XXXXXX").string();
-        if (failed || mkdtemp(name.data()) == nullptr) return Error(name + ": this folder cannot be made");
-        return Folder(name);
-    }
-    explicit Folder(std::string path) : path_(std::move(path)) {}
-    Folder(Folder&& other) noexcept : path_(std::exchange(other.path_, "")) {}
-    Folder& operator=(Folder&&) = delete;
-    ~Folder() {
-        std::error_code ignored;
-        if (!path_.empty()) fs::remove_all(path_, ignored);
-    }
-    fs::path operator/(const char* name) const { return fs::path(path_) / name; }
-
-private:
-    std::string path_;
-};
 
 RgbaImage paper() {
     constexpr int kCell = 6;  // pixels
@@ -85,7 +62,7 @@ Result<std::string> cameraKeysOf(const ConfigNode& simulation) {
 
 class Hand final : public LensCamera {
 public:
-    Hand(Folder folder, show::NominalCamera camera, std::string cameraKeys, std::uint64_t seed)
+    Hand(TemporaryFolder folder, show::NominalCamera camera, std::string cameraKeys, std::uint64_t seed)
         : folder_(std::move(folder)), camera_(std::move(camera)), cameraKeys_(std::move(cameraKeys)), seed_(seed), rng_(seed) {}
 
     std::shared_ptr<const CameraFrame> next() override {
@@ -162,7 +139,7 @@ private:
         return scene;
     }
 
-    const Folder folder_;
+    const TemporaryFolder folder_;
     const show::NominalCamera camera_;
     const std::string cameraKeys_;
     const std::uint64_t seed_;
@@ -177,7 +154,7 @@ private:
 Result<std::unique_ptr<LensCamera>> simulatedHand(const show::Site& site, std::uint64_t seed) {
     if (!site.simulation) return Error(site.file.string() + ": has no 'simulation' section to simulate the camera by");
     const std::string keys = TRY(cameraKeysOf(*site.simulation));
-    Folder folder = TRY(Folder::make());
+    TemporaryFolder folder = TRY(TemporaryFolder::make());
     TRY(writePng(folder / kPicture, paper()));
     return std::unique_ptr<LensCamera>(new Hand(std::move(folder), *site.nominalCamera, keys, seed));
 }

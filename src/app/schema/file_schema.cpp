@@ -1,5 +1,6 @@
 #include "app/schema/file_schema.h"
 
+#include "app/base/temporary_folder.h"
 #include "app/site/site_file.h"
 
 #include "show/show.h"
@@ -11,12 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <deque>
 #include <limits>
 #include <map>
 #include <set>
-#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -161,23 +160,11 @@ Report Explorer::schemaAt(const std::string& place) const {
     return forms.size() == 1 ? forms[0] : Report{{"anyOf", forms}};
 }
 
-// A folder that is gone with the object.
-struct TemporaryFolder {
-    fs::path path;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        if (!path.empty()) fs::remove_all(path, ignored);
-    }
-};
-
 }  // namespace
 
 Result<Report> schemaOf(const std::string& kind, const std::vector<Report>& examples, const ReadFile& read) {
-    std::error_code failed;
-    std::string name = (fs::temp_directory_path(failed) / "fantascope-XXXXXX").string();
-    if (failed || ::mkdtemp(name.data()) == nullptr) return Error(name + ": this folder cannot be made");
-    const TemporaryFolder folder{name};
-    Explorer explorer(folder.path / (kind + ".yaml"), read);
+    const TemporaryFolder folder = TRY(TemporaryFolder::make());
+    Explorer explorer(folder / (kind + ".yaml"), read);
     TRY(explorer.explore(examples));
     Report schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", fmt::format("A {} of Fantascope", kind)}};
     schema.update(explorer.schemaAt(""));

@@ -237,18 +237,12 @@ void ConfigFields::visit(std::string_view key, const std::function<Result<void>(
     const bool mayBeAbsent = std::exchange(nextOptional_, false);
     node_.trace([&](ConfigTrace::Asked& asked) { asked.keys.emplace(key, !mayBeAbsent); });
     if (!node_.isMap()) return;
-    const std::vector<ConfigTree::Node>& nodes = node_.tree_->nodes;
-    const std::vector<std::uint32_t>& parts = nodes[node_.node_].parts;
-    std::size_t at = 0;
-    while (at < parts.size() && (nodes[parts[at]].kind != ConfigTree::Kind::Scalar || nodes[parts[at]].text != key)) at += 2;
-    if (at == parts.size()) {
+    const auto value = node_.find(key);
+    if (!value) {
         if (!mayBeAbsent) missing_.emplace_back(key);
         return;
     }
-    const ConfigNode value = node_.child(parts[at + 1], node_.childKey(key));
-    if (ConfigTrace* const listening = ConfigTrace::of(node_.tree_->file))
-        listening->name(parts[at + 1], node_.node_, fmt::format(".{}", key), std::string(key));
-    if (auto used = use(value); !used) fail(value.position(), used.error());
+    if (auto used = use(*value); !used) fail(value->position(), used.error());
 }
 
 void ConfigFields::check(const ConfigNode& at, const Result<void>& checked) {
