@@ -187,6 +187,8 @@ Time Cue::length() const {
     return end;
 }
 
+Result<bool> readAtEnd(const ConfigNode& node) { return TRY(node.choice({"stay", "loop"})) == 1; }
+
 Result<std::size_t> readStart(const ConfigNode& node, const std::vector<Cue>& cues, const std::vector<std::string>& others) {
     std::vector<std::string> names = namesOf(cues);
     for (const std::string& start : others) {

@@ -90,6 +90,9 @@ void readTracking(std::int64_t version, ConfigFields& fields, std::string_view k
     });
 }
 
+// What comes after the last cue of a list: nothing, or the first cue again (true).
+Result<bool> readAtEnd(const ConfigNode& node);
+
 // How a list starts: with a cue, as index into `cues`, or with one of `others`, after these.
 Result<std::size_t> readStart(const ConfigNode& node, const std::vector<Cue>& cues, const std::vector<std::string>& others);
 

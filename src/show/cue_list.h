@@ -40,8 +40,8 @@ struct Movement {
     Time start{};
     Time begun{};                                          // from when sources that come play; `start` or earlier
     std::vector<std::optional<Fade>> outputs{}, levels{};  // of each of a Look's
-    // What becomes of a relay. GoesOn: the list has it as the look says, but what another list has
-    // switched since stays. Releases: the list has no say in it any more.
+    // What becomes of a relay. GoesOn: it is as the look says, unless another list has switched it
+    // since. Releases: the list has no say in it any more.
     enum class Relay : std::uint8_t { Stays, GoesOn, Switches, Releases };
     std::vector<Relay> relays{};
     struct Layer {
@@ -76,7 +76,7 @@ struct CueList {
         std::vector<Part> parts = {};      // all else moves by `wait` and `fade`
         std::vector<int> followers = {};   // one of these follows, by chance; empty: the one after it in the list
         int times = 0;                     // so often in a row; then the one after it in the list. 0: always
-        std::vector<std::uint8_t> tracksRelays = {};  // 1: has a relay stay as it was, one for each relay; a missing one: 0
+        std::vector<std::uint8_t> tracksRelays = {};  // for each relay, 1: the look does not name it; a missing one: 0
         struct SideCue {
             std::size_t list = 0;  // index into `sides`
             int cue = -1;          // -1: the dark before the first
@@ -104,8 +104,9 @@ struct CueList {
     std::vector<std::shared_ptr<const CueList>> sides = {};  // for the same site; they have no sides of their own
     std::string name = {};                                   // of a side
     std::optional<int> start = {};                           // of a side: entered when the main list leaves the dark
-    std::vector<std::size_t> windLists =
-        {};             // which list moves the wind of each output: 0 is this one, else the side, from 1; a missing one: 0
+    // The list that moves the wind of each output: 0 is this one, else the side, from 1; a missing
+    // one: 0.
+    std::vector<std::size_t> windLists = {};
     Look dark;          // what is seen before the first cue: black pictures, levels 0, relays in their safe states
     Time goInterval{};  // after a cue was entered, GO is ignored for this long
     struct Levels {

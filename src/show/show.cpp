@@ -186,9 +186,7 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
     readTracking(rules.version, fields, "panic_fade", show.panicFade, [](const ConfigNode& node) -> Result<Time> {
         return fromSeconds(TRY(node.number(0, kLongestBlackoutFade, "s")));
     });
-    readTracking(rules.version, fields, "at_end", rules.loops, [](const ConfigNode& node) -> Result<bool> {
-        return TRY(node.choice({"stay", "loop"})) == 1;
-    });
+    readTracking(rules.version, fields, "at_end", rules.loops, readAtEnd);
     show.loops = rules.loops;
     readTracking(rules.version, fields, "lists", show.sides, [&](const ConfigNode& node) { return readSides(node, rules); });
     fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, rules); });

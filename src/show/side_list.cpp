@@ -13,9 +13,7 @@ namespace {
 Result<SideList> readSide(const std::string& name, const ConfigNode& node, CueRules rules) {
     SideList side{.at = node.here(), .name = name, .cues = {}, .start = {}};
     ConfigFields fields(node);
-    fields.optional().read("at_end", side.loops, [](const ConfigNode& value) -> Result<bool> {
-        return TRY(value.choice({"stay", "loop"})) == 1;
-    });
+    fields.optional().read("at_end", side.loops, readAtEnd);
     rules.loops = side.loops;
     fields.read("cues", side.cues, [&](const ConfigNode& value) { return readCues(value, rules); });
     std::size_t start = side.cues.size();  // dark

@@ -70,6 +70,10 @@ void Hand::tell(Time showTime) {
         if (const auto on = show::kHolds[i].on; told_.*on != state_.*on)
             events_.append({showTime, show::event::HoldChanged{static_cast<show::Hold>(i), state_.*on}});
     if (told_.master != state_.master) events_.append({showTime, show::event::MasterChanged{state_.master}});
+    if (told_.highlight != state_.highlight || told_.solo != state_.solo) {
+        const std::string lamp = state_.highlight < 0 ? "" : site_.fixtures[static_cast<std::size_t>(state_.highlight)].name;
+        events_.append({showTime, show::event::LampHighlighted{lamp, state_.solo}});
+    }
     tellCues(showTime, {told_.cue, told_.loaded}, {state_.cue, state_.loaded}, 0);
     told_.sides.resize(state_.sides.size());
     for (std::size_t side = 0; side < state_.sides.size(); ++side)

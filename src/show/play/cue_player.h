@@ -88,13 +88,13 @@ public:
     // Enters a cue as enter() does, because another list brings it. takeBack() undoes it as long as
     // nothing was entered otherwise since.
     void enterBrought(int cue, Time at, Time ago);
-    // Everything that was brought after `time` has not been, and what was to come is to come again.
+    // Undoes everything that was brought after `time`. What it had put an end to comes after all.
     void takeBack(Time time);
 
     // The list after the newest revision.
     const CueList& cues() const { return *entries_.back().list; }
-    // Calls take(at, brought) for what the entries until `until` bring whose numbers are above
-    // `taken`, by time. Returns the number of the last one.
+    // Calls take(at, brought) for everything that entries bring until `until`, by time, but for
+    // entries whose numbers are not above `taken`. Returns the number of the last entry.
     std::uint64_t bring(std::uint64_t taken, Time until, auto take) const {
         for (const Entry& entry : entries_) {
             if (entry.at > until) break;

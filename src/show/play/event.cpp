@@ -50,6 +50,11 @@ struct Teller {
     std::string operator()(const event::MasterChanged& change) const {
         return fmt::format("master {:.0f} %", 100 * change.level);
     }
+    std::string operator()(const event::LampHighlighted& highlighted) const {
+        if (highlighted.lamp.empty()) return "no lamp is highlighted any more";
+        return highlighted.solo ? fmt::format("solo: nothing is seen but '{}'", highlighted.lamp)
+                                : fmt::format("highlight: '{}' is at full", highlighted.lamp);
+    }
     std::string operator()(const event::CueLoaded& loaded) const {
         if (loaded.cue < 0) return inList(loaded.list) + "GO enters the next cue";
         return fmt::format("{}GO enters cue {}: {}", inList(loaded.list), placeOf(loaded.number, loaded.cue, loaded.cues),

@@ -36,6 +36,11 @@ struct HoldChanged {
 struct MasterChanged {
     float level = 1;
 };
+// A lamp is shown at full, or another one, or none, for who focuses it.
+struct LampHighlighted {
+    std::string lamp;   // empty: none
+    bool solo = false;  // nothing is shown but that one
+};
 // GO is to enter another cue than the one after the current.
 struct CueLoaded {
     int cue = -1;  // index into Show::cues, of `cues`; -1: the next one, as usual
@@ -171,11 +176,11 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ListChosen, ShowResumed,
-                          ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, StateTold, FaultBegan,
-                          FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved,
-                          MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised, RevisionRefused,
-                          SiteChanged, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, LampHighlighted, CueLoaded, ListChosen,
+                          ShowResumed, ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, StateTold,
+                          FaultBegan, FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved,
+                          CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised,
+                          RevisionRefused, SiteChanged, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 
