@@ -9,7 +9,7 @@ namespace fantascope::app {
 
 // Notices that files are saved. Editors write a file in several steps, or put another one in its
 // place, so a file counts as saved once it has stayed the same from one look to the next. Looking
-// costs a system call for each file.
+// costs two system calls for each file.
 // Thread: one at a time.
 class FileWatch {
 public:

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace fantascope::app {
@@ -35,8 +37,12 @@ Result<RedrawnPattern> RedrawnPattern::of(const pattern::ShapePattern& shown) {
     const auto refit = pattern::PatternRefit::of(shown, guide, white, {.iterations = kForEver, .more = 1, .least = 1}, askStop);
     auto found = std::make_shared<const pattern::ShapePattern>(refit.pattern);
     auto motion = std::make_shared<const pattern::PatternMotion>(*found);
-    return RedrawnPattern{found,         {found, std::move(motion)}, refit.made,     refit.removed,
-                          refit.changed, refit.toneBefore,           refit.toneAfter};
+    return RedrawnPattern{.source = {std::move(found), std::move(motion)},
+                          .made = refit.made,
+                          .removed = refit.removed,
+                          .changed = refit.changed,
+                          .toneBefore = refit.toneBefore,
+                          .toneAfter = refit.toneAfter};
 }
 
 }  // namespace fantascope::app

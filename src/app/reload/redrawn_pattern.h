@@ -6,16 +6,15 @@
 #include "core/clock.h"
 #include "core/result.h"
 
+#include <chrono>
 #include <cstddef>
-#include <memory>
 
 namespace fantascope::app {
 
 // A light pattern whose drawing was saved: the search goes on from the pattern that is shown, for a
 // short while. Shapes come, go and move where the drawing has changed, and all others stay.
 struct RedrawnPattern {
-    std::shared_ptr<const pattern::ShapePattern> pattern;
-    render::PatternSource source;                    // that draws it
+    render::PatternSource source;                    // with the pattern
     std::size_t made = 0, removed = 0, changed = 0;  // instances
     double toneBefore = 0, toneAfter = 0;            // difference from the drawing, seen from afar, of full light
 

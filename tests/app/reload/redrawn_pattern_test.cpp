@@ -53,9 +53,9 @@ TEST(RedrawnPattern, comes_where_the_drawing_has_changed_and_stays_elsewhere) {
     const auto onTheRight = [](const pattern::ShapePattern& pattern) {
         return std::ranges::count_if(pattern.instances, [](const auto& instance) { return instance.centre.x > 210 / 180.0; });
     };
-    EXPECT_GT(onTheRight(*redrawn.pattern), onTheRight(shown));
+    EXPECT_GT(onTheRight(*redrawn.source.pattern), onTheRight(shown));
     EXPECT_LT(redrawn.removed + redrawn.changed, shown.instances.size() / 2) << "most stay";
-    EXPECT_EQ(redrawn.source.pattern, redrawn.pattern);
+    EXPECT_NE(redrawn.source.motion, nullptr) << "it sways";
 }
 
 TEST(RedrawnPattern, of_another_drawing_altogether_is_refused_with_advice) {
