@@ -1,5 +1,6 @@
 #include "app/live/frame_loop.h"
 
+#include "app/base/process_start.h"
 #include "app/live/part.h"
 #include "app/site/site_models.h"
 
@@ -368,6 +369,7 @@ void FrameLoop::show(Output& output, const Presenting& present) {
     const Result<Shown> shown = present(output.display);
     if (!shown) return;
     output.shown = *shown;
+    if (!output.firstShown) output.firstShown = shown->at;
     spend(output, FramePart::Swap, shown->swap);
     // Every refresh since the previous frame counts as late, whatever the reason.
     if (before) countLate(output, std::llround(seconds(shown->at - before->at) * output.display.refreshRate()) - 1);
@@ -375,6 +377,15 @@ void FrameLoop::show(Output& output, const Presenting& present) {
     ++framesShownOn_[static_cast<std::size_t>(&output - outputs_.data())];
     ++framesShown_;
     for (std::size_t part = 0; part < kFrameParts; ++part) output.report.took[part].add(output.spent[part]);
+}
+
+void FrameLoop::addTo(RunReport& report, bool isMachineTime) const {
+    report.swapSkew = swapSkew_;
+    report.inputToFrame = inputToFrame_;
+    const auto start = isMachineTime ? processStart(clock_) : std::nullopt;
+    if (!start || !std::ranges::all_of(outputs_, &std::optional<Time>::has_value, &Output::firstShown)) return;
+    const auto last = std::ranges::max_element(outputs_, {}, &Output::firstShown);
+    if (last != outputs_.end()) report.startToFrame = *last->firstShown - *start;
 }
 
 void FrameLoop::giveToReaders(Output& output) {

@@ -117,6 +117,8 @@ public:
     std::vector<OutputReport> outputs() const;
     const Durations& swapSkew() const { return swapSkew_; }
     const Durations& inputToFrame() const { return inputToFrame_; }
+    // Adds these two, and when every output had shown a frame if the clock is the machine's.
+    void addTo(RunReport& report, bool isMachineTime) const;
 
 private:
     // An attempt to make an output's renderer while the other outputs are shown.
@@ -145,8 +147,9 @@ private:
         bool drawn = false;                                  // in the frame that is being made
         PartTimes spent{};                                   // on that frame so far
         std::optional<Shown> shown{};                        // the newest frame; none if the display was lost since
-        PartTimes spentUntilShown{};                         // spent_ at that time
-        std::unique_ptr<Making> making{};                    // while this is set, its thread owns the display and all else here
+        std::optional<Time> firstShown{};
+        PartTimes spentUntilShown{};       // spent_ at that time
+        std::unique_ptr<Making> making{};  // while this is set, its thread owns the display and all else here
         OutputReport report{};
     };
     // Replaces the renderer. The old one stays if this fails.

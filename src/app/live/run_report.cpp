@@ -17,6 +17,24 @@ Report jsonOf(const Durations& durations) {
             {"max", durations.maxMs()}};
 }
 
+// The cues and the faults of the run.
+void addCues(Report& json, const RunReport& report) {
+    json["resumed"] = nullptr;
+    if (report.resumed) json["resumed"] = {{"cue", report.resumed->name}, {"at", seconds(report.resumed->entered)}};
+    json["cues"] = Report::array();
+    for (const CueReport& cue : report.cues) {
+        json["cues"].push_back({{"name", cue.name}, {"entered", seconds(cue.entered)}});
+        if (!cue.list.empty()) json["cues"].back()["list"] = cue.list;
+    }
+    json["faults"] = Report::array();
+    for (const FaultReport& fault : report.faults) {
+        Report entry = {{"at", seconds(fault.at)}, {"what", fault.what}};
+        if (!fault.device.empty()) entry["device"] = fault.device;
+        if (fault.until) entry["until"] = seconds(*fault.until);
+        json["faults"].push_back(std::move(entry));
+    }
+}
+
 void addWatch(Report& json, const RunReport& report) {
     json["watch"] = Report::object();
     for (const auto& [output, series] : report.watch) {
@@ -181,22 +199,10 @@ Report jsonOf(const RunReport& report) {
     json["late_video_frames"] = Report(report.lateVideoFrames);
     json["damaged_video_frames"] = Report(report.damagedVideoFrames);
     json["input_to_frame_ms"] = jsonOf(report.inputToFrame);
+    if (report.startToFrame) json["start_to_frame_ms"] = 1000 * seconds(*report.startToFrame);
     json["dmx_interval_ms"] = jsonOf(report.dmxInterval);
     json["inputs"] = {{"by_source", report.inputsBySource}, {"by_outcome", report.inputsByOutcome}};
-    json["resumed"] = nullptr;
-    if (report.resumed) json["resumed"] = {{"cue", report.resumed->name}, {"at", seconds(report.resumed->entered)}};
-    json["cues"] = Report::array();
-    for (const CueReport& cue : report.cues) {
-        json["cues"].push_back({{"name", cue.name}, {"entered", seconds(cue.entered)}});
-        if (!cue.list.empty()) json["cues"].back()["list"] = cue.list;
-    }
-    json["faults"] = Report::array();
-    for (const FaultReport& fault : report.faults) {
-        Report entry = {{"at", seconds(fault.at)}, {"what", fault.what}};
-        if (!fault.device.empty()) entry["device"] = fault.device;
-        if (fault.until) entry["until"] = seconds(*fault.until);
-        json["faults"].push_back(std::move(entry));
-    }
+    addCues(json, report);
     json["light_correction"] = jsonOf(report.light);
     json["patterns"] = jsonOf(report.patterns);
     json["z_camera"] = jsonOf(report.zCamera);

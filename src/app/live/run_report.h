@@ -87,9 +87,10 @@ struct RunReport {
     std::uint64_t seed = 0;
     std::int64_t frames = 0, lateFrames = 0;  // on all outputs
     std::vector<OutputReport> outputs;
-    Durations swapSkew;      // between the first and the last output's swap of one frame
-    Durations inputToFrame;  // from a button's arrival to the first refresh that shows its effect
-    Durations dmxInterval;   // between DMX frames
+    Durations swapSkew;                // between the first and the last output's swap of one frame
+    Durations inputToFrame;            // from a button's arrival to the first refresh that shows its effect
+    Durations dmxInterval;             // between DMX frames
+    std::optional<Time> startToFrame;  // from the start of the program until every output showed its first frame
     std::int64_t yardstickTicks = 0,
                  yardstickLate = 0;    // of an empty thread at the first output's rate: what the machine itself misses
     std::optional<CueReport> resumed;  // the cue and the time at which the run went on; none: it began
