@@ -383,25 +383,31 @@ Result<std::optional<Time>> wallFrom(const RunOptions& options, const Programme&
     return options.asFastAsPossible ? std::optional(Time{}) : std::nullopt;
 }
 
+ShowReload::Files Programme::files(std::function<void(std::vector<Projection>)> adopt) const {
+    return {[this](const show::Source& source) { return readPictureSource(source, render::VideoStream::Pace::Live, camera); },
+            readSite, std::move(adopt)};
+}
+
 Result<Programme> readProgramme(const RunOptions& options) {
     show::SourceNames names;
     show::Show show = TRY(show::Show::load(options.show, names));
     show::Site site = TRY(readSite(options.site));
-    Programme programme(TRY(show::Revision::of(std::move(show), std::move(site))));
+    std::shared_ptr<render::PictureFeed> camera;
+    if (site.nominalCamera) camera = std::make_shared<render::PictureFeed>(site.nominalCamera->size);
+    using Pace = render::VideoStream::Pace;
+    const bool isWatched = site.camera && std::ranges::any_of(site.outputs, [](const show::Output& output) {
+                               return output.projector && output.surface;
+                           });
+    Pictures pictures = TRY(readPictures(show, {options.asFastAsPossible ? Pace::Exact : Pace::Live, camera, isWatched}));
+    const show::PlayLengths lengths = render::playLengthsOf(pictures.sources);
+    Programme programme(TRY(show::Revision::of(std::move(show), std::move(site), &lengths)));
     programme.names = std::move(names);
+    programme.sources = std::move(pictures.sources);
+    programme.camera = std::move(camera);
     std::optional<std::size_t> first = programme.show.start;
     if (!options.fromCue.empty()) first = TRY(programme.show.cueNamed(options.fromCue));
     if (first) programme.firstInput = show::Input{Time{}, show::Input::Kind::Jump, static_cast<int>(*first)};
     programme.wallFrom = TRY(wallFrom(options, programme));
-    if (programme.site.nominalCamera)
-        programme.camera = std::make_shared<render::PictureFeed>(programme.site.nominalCamera->size);
-    using Pace = render::VideoStream::Pace;
-    const bool isWatched =
-        programme.site.camera && std::any_of(programme.site.outputs.begin(), programme.site.outputs.end(),
-                                             [](const auto& output) { return output.projector && output.surface; });
-    Pictures pictures =
-        TRY(readPictures(programme.show, {options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera, isWatched}));
-    programme.sources = std::move(pictures.sources);
     programme.light = lightCorrectionsOf(programme.site);
     programme.comparisons = TRY(compareWith(pictures.guides, programme.site, programme.light));
     for (const show::Source& source : programme.show.sources)

@@ -3,6 +3,7 @@
 #include "app/keys/go_schedule.h"
 #include "app/live/show_run.h"
 #include "app/live/watch.h"
+#include "app/reload/show_reload.h"
 #include "app/site/light_correction.h"
 #include "app/watch/pattern_correction.h"
 
@@ -17,6 +18,7 @@
 #include "media/image.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -47,10 +49,9 @@ struct Programme {
         return firstInput ? std::optional(static_cast<std::size_t>(firstInput->cue)) : std::nullopt;
     }
     show::SourceNames names;  // by which the show was read
-    // Reads another source's files for the same run.
-    Result<render::PictureSource> read(const show::Source& source) const {
-        return readPictureSource(source, render::VideoStream::Pace::Live, camera);
-    }
+    // The files of a run that lasts no longer than this. `adopt` takes the projections of a saved
+    // site.
+    ShowReload::Files files(std::function<void(std::vector<Projection>)> adopt) const;
     render::PictureSources sources;               // in the order of Show::sources
     std::shared_ptr<render::PictureFeed> camera;  // the pictures of camera sources; null if the site has no camera
     std::vector<Watch::Comparisons> comparisons;  // [output]

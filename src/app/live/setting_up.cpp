@@ -3,9 +3,12 @@
 #include "app/keys/edit_keys.h"
 #include "app/site/site_models.h"
 
+#include "show/site/projection_changes.h"
+
 #include "plot/test_picture.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -60,9 +63,37 @@ bool SettingUp::key(const Key& key) {
 
 void SettingUp::button(show::Button button, bool pressed) { presses_.append(Press{.button = button, .pressed = pressed}); }
 
+void SettingUp::adopt(std::vector<Projection> projections) {
+    adopted_.writable() = std::move(projections);
+    adopted_.publish();
+}
+
+void SettingUp::takeOver() {
+    const bool isNew = adopted_.update();
+    adopts_ = adopts_ || isNew;
+    if (!adopts_) return;
+    const show::Site& site = editor_.site();
+    std::vector<std::string> changed;
+    for (std::size_t i = 0; i < site.outputs.size(); ++i)
+        if (!show::projectionChanges(site.outputs[i].projection, adopted_.value()[i], i).empty())
+            changed.push_back(site.outputs[i].name);
+    if (!changed.empty() && unsaved()) {
+        if (isNew)
+            tell(show::event::RevisionRefused{site.file.filename().string(),
+                                              "what was set up here is not written yet; write it, or undo it"});
+        return;
+    }
+    adopts_ = false;
+    if (changed.empty()) return;
+    editor_.adopt(adopted_.value());
+    if (auto document = ConfigDocument::load(site.file)) document_ = std::move(*document);
+    tell(show::event::SiteAdopted{site.file, fmt::format("{}", fmt::join(changed, ", "))});
+}
+
 void SettingUp::tick(Time moment, const std::function<void(const Key&, Time)>& other) {
     now_ = moment;
     moved_ = false;
+    takeOver();
     while (const Press* const press = pressed_.next()) {
         // A terminal does not report the release of a key.
         if (press->key && moment - std::exchange(lastKey_, moment) > kPause) run(edit::Release{});
@@ -179,6 +210,7 @@ void SettingUp::save() {
     }();
     if (written) {
         editor_.saved();
+        adopts_ = false;
         message_.clear();
         tell(show::event::SiteSaved{file, file.string() + ".previous"});
     } else {

@@ -12,7 +12,9 @@
 #include "core/append_log.h"
 #include "core/clock.h"
 #include "core/config/config_edit.h"
+#include "core/latest_value.h"
 #include "media/image.h"
+#include "media/projection.h"
 
 #include <atomic>
 #include <functional>
@@ -42,6 +44,9 @@ public:
     bool key(const Key& key);
     // Takes a press or release of a hand controller's button for setting up.
     void button(show::Button button, bool pressed);
+    // The projections of all outputs, as somebody else has saved them. They are taken over with the
+    // next tick in which nothing is unsaved here. Thread: one.
+    void adopt(std::vector<Projection> projections);
     // Carries out the commands so far. `other` is called with each key at a display that is not for
     // setting up, and with the moment when it was pressed.
     void tick(Time moment, const std::function<void(const Key&, Time)>& other);
@@ -80,6 +85,7 @@ private:
     void repeatHeld(Time moment);
     RgbaImage overlayOf(std::size_t output, const Projection& projection, const Drawn& drawn) const;
     void show();
+    void takeOver();
 
     FrameLoop& frames_;
     Devices& devices_;
@@ -91,9 +97,11 @@ private:
 
     show::SiteEditor editor_;
     std::optional<ConfigDocument> document_;  // none: the file could not be read or written
-    std::string message_;                     // why the last command was refused
-    std::optional<glm::dvec2> pointer_;       // on the chosen output
-    std::optional<glm::dvec2> grip_;          // from the mouse to the handle that it drags
+    LatestValue<std::vector<Projection>> adopted_;
+    bool adopts_ = false;                // the newest of them, once nothing is unsaved
+    std::string message_;                // why the last command was refused
+    std::optional<glm::dvec2> pointer_;  // on the chosen output
+    std::optional<glm::dvec2> grip_;     // from the mouse to the handle that it drags
     bool legend_ = true, moved_ = false;
     std::optional<glm::dvec2> held_;  // the direction held on the hand controller
     Time heldUntil_{}, lastKey_{}, now_{};

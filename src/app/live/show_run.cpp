@@ -90,8 +90,8 @@ public:
           keys_(inputs_, events_, showClock_, std::move(terminal_), schedule(), QuitKey(options.backends == Backends::AsDeclared),
                 keyActions()),
           view_(played_, inputs_, events_, showClock_, options.length),
-          reload_(played_, programme.names, std::bind_front(&Programme::read, &programme), frames_.sources(), inputs_, events_,
-                  showClock_),
+          reload_(played_, programme.names, programme.files(std::bind_front(&SettingUp::adopt, &settingUp_)), frames_.sources(),
+                  inputs_, events_, showClock_),
           yardstick_(programme.site.outputs[0].refreshRate, showClock_.runStart()),
           lights_(programme.site, openSite.devices, lighting_, faults_, clock, guard) {
         faults_.begin(showClock_);
@@ -234,8 +234,7 @@ public:
         report.stopReason = options_.length && report.length >= *options_.length ? "length" : "interrupted";
         journal_.end(figuresAt(showClock_.runStart() + length_), report.stopReason);
         report.outputs = std::move(outputs);
-        report.swapSkew = frames_.swapSkew();
-        report.inputToFrame = frames_.inputToFrame();
+        frames_.addTo(report, !options_.asFastAsPossible);
         report.yardstickTicks = yardstick_.ticks();
         report.yardstickLate = yardstick_.late();
         report.zCamera = watch_.series();

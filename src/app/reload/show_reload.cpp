@@ -1,6 +1,7 @@
 #include "app/reload/show_reload.h"
 
 #include "app/reload/redrawn_pattern.h"
+#include "app/reload/site_changes.h"
 
 #include "core/config/config.h"
 
@@ -31,10 +32,10 @@ const show::Source* sourceNamed(const std::string& name, const show::Show& show)
 
 }  // namespace
 
-ShowReload::ShowReload(show::PlayedShow& show, const show::SourceNames& names, Read read, SourceStock& stock,
+ShowReload::ShowReload(show::PlayedShow& show, const show::SourceNames& names, Files files, SourceStock& stock,
                        show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock)
     : show_(show),
-      read_(std::move(read)),
+      run_(std::move(files)),
       stock_(stock),
       inputs_(inputs),
       events_(events),
@@ -74,7 +75,7 @@ void ShowReload::tick(Time moment) {
         return refuse(reading.saved, *outcome, showTime);
     }
     Paths saved = files_.saved();
-    if (saved.erase(show_.newest().site.file) > 0) tellOfSite(showTime);
+    if (saved.erase(show_.newest().site.file) > 0) readSite(showTime);
     if (refused_ && (!saved.empty() || showTime >= refused_->again)) saved.insert(refused_->saved.begin(), refused_->saved.end());
     if (saved.empty()) return;
     auto reading = read(saved);
@@ -114,7 +115,7 @@ bool ShowReload::isRedrawn(const show::Source& source, const Paths& saved) const
 }
 
 Result<render::PictureSource> ShowReload::readSource(const show::Source& source, const Paths& saved, Reading& reading) const {
-    if (!isRedrawn(source, saved)) return read_(source);
+    if (!isRedrawn(source, saved)) return run_.source(source);
     RedrawnPattern redrawn = TRY(RedrawnPattern::of(*patterns_.at(source.name)));
     reading.news += fmt::format("; {} is drawn again: {} shapes come, {} go, {} change", source.name, redrawn.made,
                                 redrawn.removed, redrawn.changed);
@@ -127,16 +128,17 @@ Result<ShowReload::Reading> ShowReload::read(const Paths& saved) {
     show::Show show = TRY(readShow(saved, reading.names));
     if (!std::ranges::equal(show.sides, now.show.sides, {}, &show::SideList::name, &show::SideList::name))
         return Error("it has other cue lists; end the show and begin it anew");
-    reading.revision = TRY(show::Revision::of(std::move(show), now.site));
     render::PictureSources sources;
     ConfigFaults faults;
-    for (const show::Source& source : reading.revision->show.sources)
+    for (const show::Source& source : show.sources)
         if (const render::PictureSource* const known = sources_->find(source.id))
             sources.add(source.id, *known);
         else
             faults.take(readSource(source, saved, reading),
                         [&](render::PictureSource picture) { sources.add(source.id, std::move(picture)); });
     TRY(faults.result());
+    const show::PlayLengths lengths = render::playLengthsOf(sources);
+    reading.revision = TRY(show::Revision::of(std::move(show), now.site, &lengths));
     reading.sources = std::make_shared<const render::PictureSources>(std::move(sources));
     return reading;
 }
@@ -168,16 +170,22 @@ void ShowReload::refuse(const Paths& files, const std::string& why, Time showTim
     events_.append({showTime, show::event::RevisionRefused{namesOf(files), why}});
 }
 
-void ShowReload::tellOfSite(Time showTime) {
+void ShowReload::readSite(Time showTime) {
     bool isOurs = false;  // the program has written it
     while (const show::Event* const event = siteNews_.next())
         isOurs = isOurs || std::holds_alternative<show::event::SiteSaved>(event->what);
-    const fs::path& file = show_.newest().site.file;
+    const show::Site& began = show_.newest().site;
     if (isOurs) return;
-    if (const auto site = show::readSite(file); !site)
-        refuse({file}, site.error().message(), showTime);
-    else
-        events_.append({showTime, show::event::SiteChanged{file}});
+    const auto saved = run_.site(began.file);
+    if (!saved) return refuse({began.file}, saved.error().message(), showTime);
+    const auto changes = changesOf(began, *saved);
+    if (!changes) return refuse({began.file}, changes.error().message(), showTime);
+    if (!changes->later.empty())
+        events_.append({showTime, show::event::SiteChanged{began.file, fmt::format("{}", fmt::join(changes->later, ", "))}});
+    if (!changes->hasSameOutputs) return;
+    std::vector<Projection> projections;
+    for (const show::Output& output : saved->outputs) projections.push_back(output.projection);
+    run_.adopt(std::move(projections));
 }
 
 }  // namespace fantascope::app

@@ -15,6 +15,7 @@
 
 #include "core/clock.h"
 #include "core/result.h"
+#include "media/projection.h"
 
 #include <filesystem>
 #include <functional>
@@ -23,6 +24,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace fantascope::app {
 
@@ -38,15 +40,22 @@ namespace fantascope::app {
 // Where the drawing of a light pattern was saved, and not the pattern, the pattern is drawn again
 // from where it is (RedrawnPattern). That lasts until the show ends; the pattern's file stays.
 //
-// The site stays as it was read at the start; who saves its file is told so.
+// A site file that was saved gives its outputs' projections to who sets outputs up. All else of the
+// site stays as it was read at the start; who saves its file is told so.
 // Thread: one at a time.
 class ShowReload {
 public:
     // Reads the files of a source.
     using Read = std::function<Result<render::PictureSource>(const show::Source&)>;
+    // The files of a run, and what becomes of them.
+    struct Files {
+        Read source;
+        std::function<Result<show::Site>(const std::filesystem::path&)> site;
+        std::function<void(std::vector<Projection>)> adopt;  // takes the projections of all outputs over
+    };
     // All arguments by reference outlive this, except `showClock`. `names`: as the first revision
     // was read with them.
-    ShowReload(show::PlayedShow& show, const show::SourceNames& names, Read read, SourceStock& stock, show::InputLog& inputs,
+    ShowReload(show::PlayedShow& show, const show::SourceNames& names, Files files, SourceStock& stock, show::InputLog& inputs,
                show::EventLog& events, const show::ShowClock& showClock);
 
     static constexpr double kRate = 10;  // Hz; a file must stay the same from one look to the next
@@ -67,14 +76,14 @@ private:
     Result<show::Show> readShow(const Paths& saved, show::SourceNames& names) const;
     void takeOver(Reading reading, Time showTime);
     void refuse(const Paths& files, const std::string& why, Time showTime);
-    void tellOfSite(Time showTime);
+    void readSite(Time showTime);
     Result<render::PictureSource> readSource(const show::Source& source, const Paths& saved, Reading& reading) const;
     bool isRedrawn(const show::Source& source, const Paths& saved) const;
     void readPatterns();
     void watchFiles();
 
     show::PlayedShow& show_;
-    const Read read_;
+    const Files run_;
     SourceStock& stock_;
     show::InputLog& inputs_;
     show::EventLog& events_;

@@ -52,8 +52,14 @@ struct Teller {
     }
     std::string operator()(const event::LampHighlighted& highlighted) const {
         if (highlighted.lamp.empty()) return "no lamp is highlighted any more";
-        return highlighted.solo ? fmt::format("solo: nothing is seen but '{}'", highlighted.lamp)
-                                : fmt::format("highlight: '{}' is at full", highlighted.lamp);
+        const std::string level =
+            highlighted.level < 1 ? fmt::format("at {:.0f} %", 100 * highlighted.level) : std::string("at full");
+        return highlighted.solo ? fmt::format("solo: nothing is seen but '{}', {}", highlighted.lamp, level)
+                                : fmt::format("highlight: '{}' is {}", highlighted.lamp, level);
+    }
+    std::string operator()(const event::LampParked& change) const {
+        return change.parked ? fmt::format("parked: '{}' stays as it is", change.lamp)
+                             : fmt::format("'{}' is parked no more", change.lamp);
     }
     std::string operator()(const event::CueLoaded& loaded) const {
         if (loaded.cue < 0) return inList(loaded.list) + "GO enters the next cue";
@@ -136,7 +142,10 @@ struct Teller {
         return fmt::format("{} was saved, but the show goes on as it was: {}", refused.files, refused.why);
     }
     std::string operator()(const event::SiteChanged& changed) const {
-        return changed.file.string() + " was saved: it counts when the show begins anew";
+        return fmt::format("{} was saved: {} counts when the show begins anew", changed.file.string(), changed.later);
+    }
+    std::string operator()(const event::SiteAdopted& adopted) const {
+        return fmt::format("{} was saved: {} is set up as it says", adopted.file.string(), adopted.outputs);
     }
     std::string operator()(const event::SettingUpBegan&) const {
         return "setting up the outputs: the picture lists the keys, e ends it";

@@ -36,10 +36,16 @@ struct HoldChanged {
 struct MasterChanged {
     float level = 1;
 };
-// A lamp is shown at full, or another one, or none, for who focuses it.
+// A lamp is shown at full, or at another level, or another one, or none, for who focuses it.
 struct LampHighlighted {
     std::string lamp;   // empty: none
     bool solo = false;  // nothing is shown but that one
+    float level = 1;
+};
+// A lamp stays as it is, or follows the cues again.
+struct LampParked {
+    std::string lamp;
+    bool parked = false;
 };
 // GO is to enter another cue than the one after the current.
 struct CueLoaded {
@@ -161,9 +167,15 @@ struct RevisionRefused {
     std::string files;
     std::string why;  // may have several lines
 };
-// The site file was saved.
+// The site file was saved; what of it counts only when the show begins anew.
 struct SiteChanged {
     std::filesystem::path file;
+    std::string later;  // keys
+};
+// The site file was saved, and outputs show their pictures as it says.
+struct SiteAdopted {
+    std::filesystem::path file;
+    std::string outputs;
 };
 struct SettingUpBegan {};
 struct SettingUpEnded {
@@ -176,11 +188,12 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, LampHighlighted, CueLoaded, ListChosen,
-                          ShowResumed, ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, StateTold,
-                          FaultBegan, FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved,
-                          CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised,
-                          RevisionRefused, SiteChanged, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What =
+    std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, LampHighlighted, LampParked, CueLoaded, ListChosen,
+                 ShowResumed, ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, StateTold, FaultBegan,
+                 FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved,
+                 MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised, RevisionRefused, SiteChanged,
+                 SiteAdopted, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -61,11 +61,13 @@ public:
                                                             names_[bank], membersKey_)));
     }
 
-    // Calls ask(bank, number of its places) for every bank that has some, and whose driver is named.
+    // Calls ask(bank, number of its places) for every bank that has some, and whose driver is
+    // named.
     template <class Ask>
     void each(Ask ask) const {
         for (std::size_t bank = 0; bank < banks_.size(); ++bank)
-            if (const auto taken = taken_.find(bank); taken != taken_.end() && !taken->second.empty() && !banks_[bank].device.driver.empty())
+            if (const auto taken = taken_.find(bank);
+                taken != taken_.end() && !taken->second.empty() && !banks_[bank].device.driver.empty())
                 ask(banks_[bank], static_cast<std::size_t>(*taken->second.rbegin()) + 1);
     }
 

@@ -1,5 +1,6 @@
 #include "show/site/site_editor.h"
 
+#include "show/site/light_values.h"
 #include "show/site/mask_handles.h"
 #include "show/site/projection_changes.h"
 
@@ -33,54 +34,6 @@ constexpr std::string_view kEdgeNames[] = {"left edge", "top edge", "right edge"
 constexpr std::string_view kToolNames[] = {"corners", "mesh", "part of the canvas", "masks", "light"};
 constexpr std::size_t kWhole = 4;  // the index of "whole picture"
 constexpr const char* kNoMaskChosen = "choose a mask first";
-
-// A number of the projector's light.
-struct LightValue {
-    std::string_view name;
-    std::array<double, 3> steps;
-    double low, high;
-    double (*read)(const ProjectorLight&);
-    void (*write)(ProjectorLight&, double);
-};
-constexpr double kUsualGamma = 2.2;  // the first gamma after sRGB
-constexpr LightValue kLightValues[] = {
-    {"brightness",
-     {0.1, 0.01, 0.001},
-     0,
-     1,
-     [](const ProjectorLight& light) { return light.brightness; },
-     [](ProjectorLight& light, double value) { light.brightness = value; }},
-    {"gamma",
-     {0.1, 0.01, 0.001},
-     1,
-     4,
-     [](const ProjectorLight& light) { return light.gamma.value_or(kUsualGamma); },
-     [](ProjectorLight& light, double value) { light.gamma = value; }},
-    {"black level",
-     {0.001, 0.0001, 0.00001},
-     0,
-     kBrightestBlack,
-     [](const ProjectorLight& light) { return light.blackLevel; },
-     [](ProjectorLight& light, double value) { light.blackLevel = value; }},
-    {"red of white",
-     {0.05, 0.005, 0.001},
-     0,
-     1,
-     [](const ProjectorLight& light) { return light.white.r; },
-     [](ProjectorLight& light, double value) { light.white.r = value; }},
-    {"green of white",
-     {0.05, 0.005, 0.001},
-     0,
-     1,
-     [](const ProjectorLight& light) { return light.white.g; },
-     [](ProjectorLight& light, double value) { light.white.g = value; }},
-    {"blue of white",
-     {0.05, 0.005, 0.001},
-     0,
-     1,
-     [](const ProjectorLight& light) { return light.white.b; },
-     [](ProjectorLight& light, double value) { light.white.b = value; }},
-};
 
 // (`index` + `step`) modulo `count`, never negative.
 std::size_t stepped(std::size_t index, int step, std::size_t count) {
@@ -440,6 +393,15 @@ std::vector<SiteEditor::Change> SiteEditor::unsaved() const {
     for (std::size_t i = 0; i < site_.outputs.size(); ++i)
         for (Change& change : projectionChanges(saved_[i], site_.outputs[i].projection, i)) changes.push_back(std::move(change));
     return changes;
+}
+
+void SiteEditor::adopt(const std::vector<Projection>& projections) {
+    for (std::size_t i = 0; i < site_.outputs.size(); ++i) site_.outputs[i].projection = projections[i];
+    saved();
+    done_.clear();
+    undone_.clear();
+    moving_ = false;
+    handle_ = std::min(handle_, handleCount() - 1);
 }
 
 void SiteEditor::saved() {

@@ -102,6 +102,9 @@ public:
     std::vector<Change> unsaved() const;
     // Call this when the changes have been saved.
     void saved();
+    // Continues from projections that somebody else has saved, one for each output. What was done
+    // before cannot be undone any more.
+    void adopt(const std::vector<Projection>& projections);
 
 private:
     struct Step {

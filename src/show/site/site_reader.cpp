@@ -142,9 +142,10 @@ Result<std::vector<SiteButton>> readButtons(const ConfigNode& node) {
 Result<void> refuseOldBanks(const ConfigNode& root) {
     for (const auto& [old, members] : {std::pair("relay_bank", "relays"), std::pair("contact_bank", "contacts")})
         if (const auto value = root.find(old))
-            return value->error(fmt::format("there may be several now; write '{0}s: [{{name: NAME, device: ...}}]', and '{1}' "
-                                            "beside it instead of in it",
-                                            old, members));
+            return value->error(
+                fmt::format("there may be several now; write '{0}s: [{{name: NAME, device: ...}}]', and '{1}' "
+                            "beside it instead of in it",
+                            old, members));
     return {};
 }
 

@@ -169,6 +169,36 @@ TEST_F(SettingUpPart, does_not_write_over_somebody_elses_change_at_once) {
     EXPECT_FALSE(setting_->unsaved());
 }
 
+// Example failures: what was set up here is lost without a word; after that, a write here fails
+// since the file is another one.
+TEST_F(SettingUpPart, takes_over_what_somebody_else_has_saved) {
+    const auto saved = [&](const char* corner) {
+        std::string theirs = readFile(file_).value();
+        const std::size_t at = theirs.find("48.35]") - 9;
+        theirs.replace(at, theirs.find(']', at) + 1 - at, corner);
+        EXPECT_TRUE(writeFile(file_, theirs));
+        std::vector<Projection> projections;
+        for (const show::Output& output : valueOf(show::readSite(file_)).outputs) projections.push_back(output.projection);
+        setting_->adopt(projections);
+        work();
+    };
+    const int before = at(0, {170, 100});
+    saved("[240.00, 48.35]");
+    EXPECT_THAT(told(), HasSubstr("was saved: left is set up as it says"));
+    EXPECT_GT(before, 100);
+    EXPECT_LT(at(0, {170, 100}), 10) << "the corner has moved in";
+    press({.letter = 'e'});
+    press({Name::Right});
+    saved("[150.00, 48.35]");
+    EXPECT_THAT(told(), HasSubstr("what was set up here is not written yet; write it, or undo it"));
+    press({.letter = 'u'});
+    EXPECT_FALSE(setting_->unsaved());
+    work();
+    press({Name::Right});
+    press({.letter = 'w'});
+    EXPECT_THAT(readFile(file_).value(), HasSubstr("[151, 48.35]"));
+}
+
 // Example failure: the corner of the left output is written to an output that somebody has put
 // before it.
 TEST_F(SettingUpPart, writes_to_the_output_of_the_same_name_wherever_it_stands_in_the_file) {
