@@ -19,7 +19,7 @@ public:
         : water_(std::move(water)), light_(std::move(light)), rays_(std::move(rays)) {}
 
     void paint(const Moment& moment, gpu::LayerPicture& picture) override {
-        water_.at(moment.show, waves_);
+        water_.at(moment.own, waves_);
         light_.paint(picture, [&] { rays_.paint(waves_); });
     }
     void follow(const CanvasPlace& place) override { light_.follow(place); }

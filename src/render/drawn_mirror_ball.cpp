@@ -28,7 +28,7 @@ public:
         : turn_(turn), light_(std::move(light)), spots_(std::move(spots)) {}
 
     void paint(const Moment& moment, gpu::LayerPicture& picture) override {
-        const auto angle = static_cast<float>(2 * std::numbers::pi * std::fmod(seconds(moment.show) / turn_, 1));
+        const auto angle = static_cast<float>(2 * std::numbers::pi * std::fmod(seconds(moment.own) / turn_, 1));
         light_.paint(picture, [&] { spots_.paint(angle); });
     }
     void follow(const CanvasPlace& place) override { light_.follow(place); }

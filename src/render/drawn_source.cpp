@@ -99,7 +99,7 @@ void DrawnInstances::follow(const CanvasPlace& place) {
 
 void DrawnInstances::paint(const Moment& moment, DrawingTools& tools) {
     constexpr glm::vec3 kEverywhere{0, 0, 1};
-    tools.uploads.time([&] { placed_.place(moment.show, moment.wind, moment.exchange, meshes_.place()); });
+    tools.uploads.time([&] { placed_.place(moment.own, moment.wind, moment.exchange, meshes_.place()); });
     tools.painter.paint(meshes_,
                         bend_ != nullptr ? placed_.canvasEdges() : std::array{kEverywhere, kEverywhere, kEverywhere, kEverywhere},
                         bend_);

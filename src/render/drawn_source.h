@@ -29,8 +29,8 @@ struct DrawingTools {
 
 // The moment that a layer is drawn for.
 struct Moment {
-    Time show{};     // show time
-    Time ofLayer{};  // time since the source came onto the output
+    Time own{};      // the source's own time: cue time, unless it plays at a speed of its own
+    Time ofLayer{};  // its own time since it came onto the output
     Wind wind{};
     show::PatternExchange exchange{};  // which patterns of the source are seen
 };

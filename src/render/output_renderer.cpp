@@ -115,7 +115,8 @@ void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time
         for (std::size_t i = first; i < last; ++i) {
             const show::LayerState& layer = state.layers[i];
             if (layer.opacity <= 0) continue;
-            drawnOf(layer).paint({time, time - layer.begun, wind, layer.exchange}, composer_->nextPicture());
+            const Time own = time - layer.behind;
+            drawnOf(layer).paint({own, own - layer.begun, wind, layer.exchange}, composer_->nextPicture());
             composer_->lay(layer.opacity, layer.blend);
         }
     };

@@ -153,8 +153,32 @@ std::vector<CueList::Part> boundParts(const Cue& cue, const Look& look, const Si
     return parts;
 }
 
+// Puts how a look's sources play over how they played in the cue before.
+void putPlays(const NamedLook& named, CueList::Cue& cue) {
+    cue.restarts.clear();
+    for (const auto& [source, speed, restarts] : named.plays) {
+        if (restarts) cue.restarts.push_back(source);
+        if (!speed) continue;
+        std::erase_if(cue.speeds, [&](const auto& before) { return before.source == source; });
+        cue.speeds.push_back({source, *speed});
+    }
+}
+
+// The sources of a look that come to an end.
+std::vector<CueList::Cue::Ending> endingsOf(const Look& look, const PlayLengths& lengths) {
+    std::set<SourceId> seen;
+    for (const OutputState& output : look.outputs)
+        for (const LayerState& layer : output.layers)
+            if (layer.opacity > 0) seen.insert(layer.source);
+    std::vector<CueList::Cue::Ending> endings;
+    for (const SourceId source : seen)
+        if (const Time* const length = lengths.find(source)) endings.push_back({source, *length});
+    return endings;
+}
+
 // The cues of one list. Names that the site does not have go to `faults`.
-std::vector<CueList::Cue> boundCues(const std::vector<Cue>& cues, const Show& show, const Site& site, ConfigFaults& faults) {
+std::vector<CueList::Cue> boundCues(const std::vector<Cue>& cues, const Show& show, const Site& site, const PlayLengths* lengths,
+                                    ConfigFaults& faults) {
     CueList::Cue nothing;
     nothing.look = darkLook(site);
     nothing.winds.resize(site.outputs.size());
@@ -164,12 +188,18 @@ std::vector<CueList::Cue> boundCues(const std::vector<Cue>& cues, const Show& sh
         CueList::Cue& next = bound.emplace_back(cue.blocks || bound.empty() ? nothing : bound.back());
         putLook(look, site, next.look, faults);
         putWinds(look, site, next.winds);
+        putPlays(look, next);
         next.tracksRelays.assign(site.relays.size(), cue.blocks ? 0 : 1);
         for (const auto& relay : look.relays)
             if (const auto index = findName(relay.name, namesOf(site.relays), "")) next.tracksRelays[*index] = 0;
         next.wait = cue.wait;
         next.fade = cue.fade;
         next.follow = cue.follow;
+        next.endings.clear();
+        if (cue.mediaEnd && lengths != nullptr) next.endings = endingsOf(next.look, *lengths);
+        if (cue.mediaEnd && lengths != nullptr && next.endings.empty())
+            faults.add(cue.mediaEnd->error(
+                "nothing that is seen in this cue comes to an end; give its video 'times', or its shadow 'play: once'"));
         next.followers = cue.followers;
         next.times = cue.times;
         next.name = cue.name;
@@ -220,7 +250,7 @@ std::vector<std::size_t> boundWinds(const Show& show, const Site& site, ConfigFa
 
 }  // namespace
 
-Result<CueList> bound(const Show& show, const Site& site) {
+Result<CueList> bound(const Show& show, const Site& site, const PlayLengths* lengths) {
     CueList list;
     list.dark = darkLook(site);
     ConfigFaults faults;
@@ -249,12 +279,12 @@ Result<CueList> bound(const Show& show, const Site& site) {
         side.start = named.start;
         side.loops = named.loops;
         side.seed = streamSeed(show.seed, {kSideStream, list.sides.size()});
-        side.cues = boundCues(named.cues, show, site, faults);
+        side.cues = boundCues(named.cues, show, site, lengths, faults);
         keepOff(named.cues, show, site, side);
         list.sides.push_back(std::make_shared<const CueList>(std::move(side)));
     }
     list.loops = show.loops;
-    list.cues = boundCues(show.cues, show, site, faults);
+    list.cues = boundCues(show.cues, show, site, lengths, faults);
     TRY(faults.result());
     return list;
 }

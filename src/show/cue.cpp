@@ -41,30 +41,37 @@ constexpr std::string_view kDark = "dark";  // before the first cue of a list
 // How a cue is followed by another one.
 struct Follow {
     Time time{};
-    bool isAfterFade = false;    // `time` counts from when the cue's look is whole, else from when it is entered
+    // From when `time` counts: from when the cue is entered, from when its look is whole, or from
+    // when all that plays has ended, too.
+    enum class From { Entry, Fade, Media } from = From::Entry;
+    FilePlace at{};              // of the key
     std::vector<ConfigNode> to;  // names of cues
     int times = 0;
 };
 Result<Follow> readFollow(const ConfigNode& node, std::int64_t version) {
     if (!node.isMap()) return Follow{.time = TRY(readTime(node, kLongestWait)), .to = {}};
     TRY(needsTracking(node, "follow", version));
-    std::optional<Time> after, afterFade;
-    const auto readWait = [](const ConfigNode& value) -> Result<std::optional<Time>> {
-        return std::optional(TRY(readTime(value, kLongestWait)));
-    };
     Follow follow;
+    int given = 0;
+    const auto waitFrom = [&](Follow::From from) {
+        return [&, from](const ConfigNode& value) -> Result<Time> {
+            ++given;
+            follow.from = from;
+            follow.at = value.here();
+            return readTime(value, kLongestWait);
+        };
+    };
     ConfigFields fields(node);
-    fields.optional().read("after", after, readWait);
-    fields.optional().read("after_fade", afterFade, readWait);
+    fields.optional().read("after", follow.time, waitFrom(Follow::From::Entry));
+    fields.optional().read("after_fade", follow.time, waitFrom(Follow::From::Fade));
+    fields.optional().read("after_media", follow.time, waitFrom(Follow::From::Media));
     fields.optional().read("to", follow.to, [](const ConfigNode& value) -> Result<std::vector<ConfigNode>> {
         return value.isList() ? TRY(value.items(1)) : std::vector{value};
     });
     fields.optional().integer("times", follow.times, 1, kMostTimes);
     TRY(fields.finish());
-    if (after.has_value() == afterFade.has_value()) return node.error("give one of 'after' and 'after_fade', in seconds");
+    if (given != 1) return node.error("give one of 'after', 'after_fade' and 'after_media', in seconds");
     if (follow.times > 0 && follow.to.empty()) return node.error("'times' counts how often 'to' follows; add 'to', or remove it");
-    follow.time = after ? *after : *afterFade;
-    follow.isAfterFade = !after;
     return follow;
 }
 
@@ -152,7 +159,8 @@ Result<Cue> readCue(const ConfigNode& node, const CueRules& rules, std::vector<C
     });
     TRY(fields.finish());
     if (!follow) return cue;
-    cue.follow = follow->time + (follow->isAfterFade ? cue.length() : Time{});
+    cue.follow = follow->time + (follow->from == Follow::From::Fade ? cue.length() : Time{});
+    if (follow->from == Follow::From::Media) cue.mediaEnd = follow->at;
     cue.times = follow->times;
     to = std::move(follow->to);
     return cue;
@@ -185,6 +193,10 @@ Time Cue::length() const {
     Time end = wait + fade.longer();
     for (const CuePart& part : parts) end = std::max(end, part.wait.value_or(wait) + part.fade.value_or(fade).longer());
     return end;
+}
+
+std::optional<Time> Cue::soonestFollow() const {
+    return follow && mediaEnd ? std::max(kShortestLoop, length() + *follow) : follow;
 }
 
 Result<bool> readAtEnd(const ConfigNode& node) { return TRY(node.choice({"stay", "loop"})) == 1; }

@@ -50,15 +50,18 @@ struct Cue {
     std::size_t look = 0;  // index into Show::looks
     Time wait{};           // from when it is entered until it begins to change what is seen
     Fade fade;
-    std::optional<Time> follow;  // from when it is entered until another one is
-    std::vector<int> followers;  // index into Show::cues: one of these follows, by chance; empty: the next one
-    int times = 0;               // so often in a row; then the next one. 0: always
-    bool blocks = true;          // what the look does not name is dark; else it stays
+    std::optional<Time> follow;         // from when it is entered until another one is
+    std::optional<FilePlace> mediaEnd;  // then `follow` counts from when its look is whole and all that plays in it has ended
+    std::vector<int> followers;         // index into Show::cues: one of these follows, by chance; empty: the next one
+    int times = 0;                      // so often in a row; then the next one. 0: always
+    bool blocks = true;                 // what the look does not name is dark; else it stays
     std::vector<CuePart> parts;
     std::vector<CueList::Cue::SideCue> with;  // `list`: index into Show::sides
 
     // From when it is entered until its look is whole.
     Time length() const;
+    // The least time from when it is entered until another one follows.
+    std::optional<Time> soonestFollow() const;
 };
 
 // What the rest of the file says, as far as its cues need it.

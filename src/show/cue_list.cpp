@@ -16,6 +16,8 @@ std::vector<Movement> CueList::Cue::movements(Time entered, Time at, Time least)
         const auto rest = [&](Time length) { return std::max(begun + length - at, least); };
         return Timing{at, Fade(rest(own.in), rest(own.out), own.curve)};
     };
+    // What has begun is not begun again.
+    const std::vector<SourceId> again = entered + wait < at ? std::vector<SourceId>() : restarts;
     const Timing others = timingOf(wait, fade);
     std::vector<Timing> outputs(look.outputs.size(), others), levels(look.levels.size(), others),
         relays(look.relays.size(), others);
@@ -50,8 +52,21 @@ std::vector<Movement> CueList::Cue::movements(Time entered, Time at, Time least)
         }
         for (const Layer& layer : layers)
             movement.layers.push_back({layer.which.output, layer.which.source, fadeNow(layer.timing)});
+        movement.speeds = fadeNow(others);
+        if (movement.speeds) movement.restarts = again;
     }
     return movements;
+}
+
+std::optional<Time> CueList::Cue::usualFollow() const {
+    if (!follow || endings.empty()) return follow;
+    Time over = std::max(kShortestLoop - *follow, length());
+    for (const Ending& ending : endings) {
+        const float speed = speedOf(ending.source);
+        if (speed <= 0) return std::nullopt;
+        over = std::max(over, wait + fromSeconds(seconds(ending.length) / static_cast<double>(speed)));
+    }
+    return over + *follow;
 }
 
 }  // namespace fantascope::show

@@ -20,6 +20,8 @@ namespace fantascope::show {
 
 // A show has at most so many lists beside the main one.
 constexpr std::size_t kMostSides = 8;
+// Cues that follow each other in a circle take at least so long for it.
+constexpr Time kShortestLoop = std::chrono::milliseconds(100);
 
 // How what is seen moves to another look. What becomes brighter comes in, what becomes darker goes
 // out.
@@ -49,7 +51,9 @@ struct Movement {
         SourceId source;
         std::optional<Fade> fade;
     };
-    std::vector<Layer> layers{};  // that do not move as their output does
+    std::vector<Layer> layers{};       // that do not move as their output does
+    std::optional<Fade> speeds{};      // of the sources; without a fade they go on as before
+    std::vector<SourceId> restarts{};  // they begin again
 };
 
 // A show's cues with every name looked up in one site: all that playback needs. The main list, and
@@ -83,6 +87,27 @@ struct CueList {
         };
         std::vector<SideCue> with = {};  // that are entered together with this one; only of the main list
 
+        struct Speed {
+            SourceId source;
+            float speed = 1;
+        };
+        std::vector<Speed> speeds = {};       // at which sources play; a missing one plays at 1
+        std::vector<SourceId> restarts = {};  // sources that begin again with this cue
+        struct Ending {
+            SourceId source;
+            Time length{};  // of its own time, from when it comes until it is over
+        };
+        // With any, `follow` counts from when the look is whole and all of these are over; but at
+        // least kShortestLoop passes.
+        std::vector<Ending> endings = {};
+
+        // From when the cue is entered until another one follows, if its sources come with it and
+        // play at its speeds; nothing: none does.
+        std::optional<Time> usualFollow() const;
+        // The least that this may be.
+        std::optional<Time> soonestFollow() const {
+            return follow && !endings.empty() ? std::max(kShortestLoop, length() + *follow) : follow;
+        }
         // From when the cue is entered until it begins to change what is seen.
         Time firstWait() const {
             Time first = wait;
@@ -98,6 +123,10 @@ struct CueList {
         // How a cue that was entered at `entered` moves what is seen from `at` on, by start. What
         // has begun before `at` takes the rest of its fade, but no less than `least`.
         std::vector<Movement> movements(Time entered, Time at, Time least) const;
+        float speedOf(SourceId source) const {
+            const auto found = std::ranges::find(speeds, source, &Speed::source);
+            return found == speeds.end() ? 1 : found->speed;
+        }
     };
     std::vector<Cue> cues;
     bool loops = false;                                      // the first cue comes after the last one

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "core/clock.h"
+#include "show/cue_list.h"
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -10,11 +9,9 @@
 
 namespace fantascope::show {
 
-// Cues that follow each other in a circle take at least so long for it.
-constexpr Time kShortestLoop = std::chrono::milliseconds(100);
-
 // The cues that may follow a cue by themselves: its own followers, and, once these had their turns,
-// the one after it in the list. `Cue`: with `follow`, `followers` and `times`, as CueList::Cue.
+// the one after it in the list. `Cue`: with `follow`, `soonestFollow()`, `followers` and `times`,
+// as CueList::Cue.
 template <class Cue>
 std::vector<std::size_t> followersOf(const std::vector<Cue>& cues, std::size_t cue, bool loops) {
     const Cue& now = cues[cue];
@@ -35,7 +32,7 @@ std::optional<std::size_t> hurriedLoop(const std::vector<Cue>& cues, bool loops)
         if (states[cue] == State::Open) return cue;
         if (states[cue] == State::Done) return std::nullopt;
         states[cue] = State::Open;
-        if (cues[cue].follow && *cues[cue].follow < kShortestLoop)
+        if (const auto soonest = cues[cue].soonestFollow(); soonest && *soonest < kShortestLoop)
             for (const std::size_t follower : followersOf(cues, cue, loops))
                 if (const auto found = visit(follower)) return found;
         states[cue] = State::Done;

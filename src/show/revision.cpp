@@ -6,8 +6,8 @@
 
 namespace fantascope::show {
 
-Result<std::shared_ptr<const Revision>> Revision::of(Show show, Site site) {
-    CueList cues = TRY(show.bind(site));
+Result<std::shared_ptr<const Revision>> Revision::of(Show show, Site site, const PlayLengths* lengths) {
+    CueList cues = TRY(show.bind(site, lengths));
     std::optional<Nights> nights = TRY(nightsOf(show, site));
     return std::make_shared<const Revision>(Revision{std::move(show), std::move(site), std::move(cues), std::move(nights)});
 }

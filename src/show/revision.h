@@ -22,7 +22,8 @@ struct Revision {
     std::optional<Nights> nights;  // of a show with a schedule
 
     // Error: as Show::bind; or the show has a schedule, but the site no place.
-    static Result<std::shared_ptr<const Revision>> of(Show show, Site site);
+    // `lengths`: as of Show::bind.
+    static Result<std::shared_ptr<const Revision>> of(Show show, Site site, const PlayLengths* lengths = nullptr);
     // The cue list of a revision. The pointer keeps the whole revision alive.
     static std::shared_ptr<const CueList> cuesOf(const std::shared_ptr<const Revision>& revision) {
         return {revision, &revision->cues};

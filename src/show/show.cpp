@@ -111,6 +111,34 @@ Result<NamedLook::Levels> readLevels(const ConfigNode& node) {
     return NamedLook::Levels(TRY(readLevel(node)));
 }
 
+// How a look's sources play, by their names: a speed, or a map.
+Result<std::vector<NamedLook::Play>> readPlays(const ConfigNode& node, const CueRules& rules) {
+    constexpr double kHighestSpeed = 10;
+    std::vector<NamedLook::Play> plays;
+    ConfigFaults faults;
+    const auto speedOf = [](const ConfigNode& value) -> Result<std::optional<float>> {
+        return std::optional(static_cast<float>(TRY(value.number(0, kHighestSpeed))));
+    };
+    const auto readPlay = [&](const std::string& name, const ConfigNode& value) -> Result<NamedLook::Play> {
+        const auto source = findName(name, rules.sources, "source");
+        if (!source) return value.error(source.error().message());
+        NamedLook::Play play{.source = rules.ids[*source], .speed = {}};
+        if (!value.isMap()) {
+            play.speed = TRY(speedOf(value));
+            return play;
+        }
+        ConfigFields fields(value);
+        fields.optional().read("speed", play.speed, speedOf);
+        fields.optional().boolean("restart", play.restarts);
+        TRY(fields.finish());
+        return play;
+    };
+    for (const auto& [name, value] : TRY(node.entries()))
+        faults.take(readPlay(name, value), [&](NamedLook::Play play) { plays.push_back(play); });
+    TRY(faults.result());
+    return plays;
+}
+
 Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, const CueRules& rules) {
     NamedLook look;
     look.name = name;
@@ -124,6 +152,7 @@ Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, cons
         return std::optional(TRY(readWind(wind)));
     });
     fields.optional().read("relays", look.relays, [](const ConfigNode& map) { return readNamed<bool>(map, readSwitch); });
+    readTracking(rules.version, fields, "play", look.plays, [&](const ConfigNode& map) { return readPlays(map, rules); });
     TRY(fields.finish());
     return look;
 }
@@ -204,7 +233,7 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
     return show;
 }
 
-Result<CueList> Show::bind(const Site& site) const { return bound(*this, site); }
+Result<CueList> Show::bind(const Site& site, const PlayLengths* lengths) const { return bound(*this, site, lengths); }
 
 bool Show::needsNoGoFrom(std::size_t cue) const {
     std::set<std::size_t> reached{cue};

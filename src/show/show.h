@@ -37,6 +37,12 @@ struct NamedLook {
     std::optional<WindWish> wind;  // of all outputs
     std::vector<Named<Levels>> fixtures;
     std::vector<Named<bool>> relays;  // true: on
+    struct Play {
+        SourceId source;
+        std::optional<float> speed;  // none: as before
+        bool restarts = false;       // it begins again
+    };
+    std::vector<Play> plays;
 };
 
 // show.yaml as its author wrote it; docs/show-format.md describes the file. Value type.
@@ -63,7 +69,7 @@ struct Show {
     static Result<Show> load(const std::filesystem::path& fileOrFolder);
 
     // bound() of this show.
-    Result<CueList> bind(const Site& site) const;
+    Result<CueList> bind(const Site& site, const PlayLengths* lengths = nullptr) const;
 
     // The cues of a list, by Input::list.
     const std::vector<Cue>& cuesOf(int list) const { return list == 0 ? cues : sides[static_cast<std::size_t>(list) - 1].cues; }

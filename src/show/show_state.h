@@ -31,8 +31,10 @@ struct LayerState {
     SourceId source;
     float opacity = 0;  // 0..1, in linear light
     Blend blend = Blend::Add;
-    Time begun{};                // cue time at which the source came onto the output; a video begins there
+    Time begun{};                // own time of the source (PlayCourse) when it came onto the output; a video begins there
     PatternExchange exchange{};  // which of its patterns are seen
+    Time behind{};               // by how much its own time is behind cue time
+    float speed = 1;             // at which its own time goes by
     friend bool operator==(const LayerState&, const LayerState&) = default;
 };
 
@@ -74,17 +76,19 @@ struct ListPlace {
 
 // Where the cues are, and what the operator does to them.
 struct Controls {
-    int cue = -1;                    // index into Show::cues of the current cue; -1 before the first
-    int loaded = -1;                 // the cue that GO is to enter; -1: the one after the current one
-    std::optional<int> next{};       // the cue that GO enters; nothing: there is none
-    bool blackout = false;           // pictures and fixtures are held dark
-    bool panic = false;              // they are held dark, and relays safe, until the operator restores them
-    bool paused = false;             // the cues' time is paused
-    bool frozen = false;             // what is seen is kept, whatever the cues do
-    float master = 1;                // the factor of pictures and levels that is wanted
-    bool locked = false;             // nothing but darkness is taken from hand controller, contacts and windows
-    int highlight = -1;              // index into Site::fixtures of the one that is shown at full; -1: none
+    int cue = -1;               // index into Show::cues of the current cue; -1 before the first
+    int loaded = -1;            // the cue that GO is to enter; -1: the one after the current one
+    std::optional<int> next{};  // the cue that GO enters; nothing: there is none
+    bool blackout = false;      // pictures and fixtures are held dark
+    bool panic = false;         // they are held dark, and relays safe, until the operator restores them
+    bool paused = false;        // the cues' time is paused
+    bool frozen = false;        // what is seen is kept, whatever the cues do
+    float master = 1;           // the factor of pictures and levels that is wanted
+    bool locked = false;        // nothing but darkness is taken from hand controller, contacts and windows
+    int highlight = -1;         // index into Site::fixtures of the one that is shown at `highlightLevel`; -1: none
+    float highlightLevel = 1;
     bool solo = false;               // nothing is shown but that one
+    std::vector<int> parked{};       // indices into Site::fixtures of those that stay as they are; ascending
     std::vector<ListPlace> sides{};  // of each list that plays beside the main one
     friend bool operator==(const Controls&, const Controls&) = default;
 };
@@ -109,7 +113,7 @@ struct ShowState : Look, Controls {
     LampTrim lamps{};                  // `levels` and `relays` are without it
     bool corrects = true;              // corrections are allowed
     Time time{};                       // show time
-    Time cueTime{};                    // by which videos, shadows and patterns move
+    Time cueTime{};                    // by which sources move, but for LayerState::behind
     bool moves = true;                 // cueTime goes on; else it stands still
     std::uint64_t inputs = 0;          // how many inputs have taken effect so far
     std::uint64_t revision = 0;        // how many revisions of the show are among them

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/clock.h"
+
 #include <algorithm>
 #include <compare>
 #include <cstdint>
@@ -65,5 +67,9 @@ public:
 private:
     std::vector<Entry> entries_;
 };
+
+// For how long of their own time sources play until they are over. What goes on for ever is not
+// there.
+using PlayLengths = BySource<Time>;
 
 }  // namespace fantascope::show

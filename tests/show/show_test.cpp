@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 constexpr std::string_view kShow = R"(fantascope: show
 version: 1
@@ -635,9 +636,45 @@ TEST(TrackedShow, may_follow_in_loops) {
 
     const auto refusal = [&](std::string_view follow) { return Loaded(with(follow)).show.error().message(); };
     EXPECT_THAT(refusal("{after: 3, to: Duks}"), HasSubstr("follow.to: one of"));
-    EXPECT_THAT(refusal("{to: Dusk}"), HasSubstr("give one of 'after' and 'after_fade'"));
+    EXPECT_THAT(refusal("{to: Dusk}"), HasSubstr("give one of 'after', 'after_fade' and 'after_media'"));
     EXPECT_THAT(refusal("{after: 3, times: 2}"), HasSubstr("'times' counts how often 'to' follows"));
     EXPECT_THAT(refusal("{after: 0.05, to: Left}"), HasSubstr("follow each other in a circle in less than 0.1 s"));
+}
+
+// Example failure: a speed does not track, or a restart does.
+TEST(TrackedShow, says_how_its_sources_play) {
+    const auto with = [](std::string_view play) {
+        const std::string text = replaced(std::string(kTrackedShow), "follow: 20", "follow: {after_media: 2, to: Dusk}");
+        const std::string played = replaced(text, "\n  black:", fmt::format("\n    play: {}\n  black:", play));
+        return replaced(played, "look: nothing, fade: 0", "look: nothing, fade: 0, block: true");
+    };
+    const Loaded loaded(with("{dim: 0.5, leaves: {restart: true}}"));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const SourceId dim = loaded.show->sources[1].id, leaves = loaded.show->sources[0].id;
+    PlayLengths lengths;
+    lengths.add(dim, 7s);
+    const CueList list = loaded.show->bind(testSite(), &lengths).value();
+    EXPECT_EQ(list.cues[0].speedOf(dim), 1);
+    EXPECT_EQ(list.cues[1].speedOf(dim), 0.5f);
+    EXPECT_THAT(list.cues[1].restarts, ElementsAre(leaves));
+    EXPECT_EQ(list.cues[1].usualFollow(), 16s);
+    EXPECT_EQ(list.cues[2].speedOf(dim), 0.5f);
+    EXPECT_THAT(list.cues[2].restarts, IsEmpty());
+    EXPECT_EQ(list.cues[4].speedOf(dim), 1) << "it blocks";
+    const CueList shorter = loaded.show->bind(testSite()).value();
+    EXPECT_NE(hashOf(list), hashOf(shorter)) << "a journal must not be taken for exact";
+    EXPECT_THAT(loaded.show->bind(testSite(), &lengths)->cues[1].endings,
+                ElementsAre(testing::Field(&CueList::Cue::Ending::length, 7s)));
+    const PlayLengths none;
+    EXPECT_THAT(loaded.show->bind(testSite(), &none).error().message(),
+                HasSubstr("follow.after_media: nothing that is seen in this cue comes to an end"));
+
+    const auto refusal = [&](std::string_view play) { return Loaded(with(play)).show.error().message(); };
+    EXPECT_THAT(refusal("{leafs: 1}"), HasSubstr("no source is called 'leafs'"));
+    EXPECT_THAT(refusal("{dim: 11}"), HasSubstr("play.dim: 11 is out of range, 0 .. 10 is allowed"));
+    EXPECT_THAT(refusal("{dim: {sped: 1}}"), HasSubstr("did you mean 'speed'?"));
+    EXPECT_THAT(Loaded(replaced(with("{dim: 1}"), "version: 2", "version: 1")).show.error().message(),
+                HasSubstr("needs 'version: 2'"));
 }
 
 TEST(TrackedShow, may_play_by_a_schedule) {

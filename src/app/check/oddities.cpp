@@ -64,10 +64,10 @@ void noteUnreached(const std::vector<show::Cue>& cues, std::optional<std::size_t
                                            cues[*start].name, each.name));
         Time begins = each.wait;
         for (const show::CuePart& part : each.parts) begins = std::min(begins, part.wait.value_or(each.wait));
-        if (each.follow && *each.follow <= begins && begins > Time{})
+        if (const auto follow = each.soonestFollow(); follow && *follow <= begins && begins > Time{})
             oddities.push_back(
                 fmt::format("{}: the cue '{}' waits {:g} s, and the next one follows after {:g} s: nothing of it is seen", file,
-                            each.name, seconds(begins), seconds(*each.follow)));
+                            each.name, seconds(begins), seconds(*follow)));
     }
 }
 

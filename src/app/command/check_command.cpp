@@ -76,12 +76,12 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
     ConfigFaults faults;
     show::CueList cues;
     std::optional<show::Nights> nights;
-    if (site) faults.take(show.bind(*site), [&](show::CueList bound) { cues = std::move(bound); });
     if (site) faults.take(show::nightsOf(show, *site), [&](auto planned) { nights = std::move(planned); });
     if (nights) noteNights(show, *nights, finding.oddities);
     std::shared_ptr<render::PictureFeed> camera;
     if (site && site->nominalCamera) camera = std::make_shared<render::PictureFeed>(site->nominalCamera->size);
     show::BySource<ShapedSource> shaped;
+    render::PictureSources sources;
     for (const show::Source& source : show.sources) {
         noteNegatives(source, finding.oddities);
         const std::vector<fs::path> files = show::filesOf(source);
@@ -93,11 +93,15 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
         const auto read = readPictureSource(source, render::VideoStream::Pace::Exact, camera);
         if (read) {
             if (const auto aspect = render::aspectOf(*read)) shaped.add(source.id, {&source, *aspect, rowsOf(*read)});
+            sources.add(source.id, *read);
         } else if (std::all_of(files.begin(), files.end(),
                                [&](const fs::path& file) { return checkFile(file, site).has_value(); })) {
             faults.add(read.error());  // each file is valid, but they do not fit together
         }
     }
+    const show::PlayLengths lengths = render::playLengthsOf(sources);
+    const bool isWhole = sources.size() == show.sources.size();
+    if (site) faults.take(show.bind(*site, isWhole ? &lengths : nullptr), [&](show::CueList bound) { cues = std::move(bound); });
     TRY(faults.result());
     noteUnseen(show, finding.oddities);
     if (site) {

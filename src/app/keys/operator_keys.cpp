@@ -10,6 +10,16 @@ namespace fantascope::app {
 using Source = show::Input::Source;
 using Kind = show::Input::Kind;
 
+namespace {
+
+// A level, some tenths higher.
+float stepped(float level, int steps) {
+    constexpr float kTenths = 10;
+    return std::clamp((std::round(level * kTenths) + static_cast<float>(steps)) / kTenths, 0.0f, 1.0f);
+}
+
+}  // namespace
+
 OperatorKeys::OperatorKeys(show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock,
                            std::unique_ptr<TerminalKeys> terminal, GoSchedule schedule, QuitKey quitKey, Actions actions)
     : inputs_(inputs),
@@ -48,10 +58,6 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         input.list = list_;
         take(kind);
     };
-    const auto toggle = [&](Kind kind) {
-        input.kind = kind;
-        inputs_.submit(input);
-    };
     switch (*action) {
         case Action::Go:
             return enter(Kind::Go);
@@ -76,11 +82,16 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         case Action::Brighter:
             return dim(input, *action == Action::Brighter ? 1 : -1);
         case Action::Highlight:
-            return highlight(input);
         case Action::Solo:
+        case Action::LampDimmer:
+        case Action::LampBrighter:
+        case Action::Park:
+            return light(input, *action);
         case Action::Corrections:
         case Action::Lock:
-            return toggle(*action == Action::Solo ? Kind::Solo : *action == Action::Lock ? Kind::Lock : Kind::Corrections);
+            input.kind = *action == Action::Lock ? Kind::Lock : Kind::Corrections;
+            inputs_.submit(input);
+            return;
         case Action::Pictures:
             return actions_.takePictures();
         case Action::Keys:
@@ -122,20 +133,25 @@ void OperatorKeys::chooseList(Time at) {
     events_.append({at, show::event::ListChosen{list_ == 0 ? "" : sides[static_cast<std::size_t>(list_) - 1]->name}});
 }
 
-// The next lamp; after the last one none.
-void OperatorKeys::highlight(show::Input input) {
+// What a key does to single lamps.
+void OperatorKeys::light(show::Input input, RunKey::Action action) {
+    using Action = RunKey::Action;
     replica_.stateAt(input.at, state_);
     const int count = static_cast<int>(replica_.playback().cues().fixtures.size());
-    input.kind = Kind::Highlight;
-    input.fixture = state_.highlight + 1 < count ? state_.highlight + 1 : -1;
+    input.kind = action == Action::Highlight ? Kind::Highlight
+                 : action == Action::Solo    ? Kind::Solo
+                 : action == Action::Park    ? Kind::Park
+                                             : Kind::Level;
+    input.fixture = state_.highlight;
+    if (action == Action::Highlight) input.fixture = state_.highlight + 1 < count ? state_.highlight + 1 : -1;
+    if (input.kind == Kind::Level) input.level = stepped(state_.highlightLevel, action == Action::LampBrighter ? 1 : -1);
     inputs_.submit(input);
 }
 
 void OperatorKeys::dim(show::Input input, int step) {
-    constexpr float kSteps = 10;
     replica_.stateAt(input.at, state_);
     input.kind = Kind::Master;
-    input.level = std::clamp((std::round(state_.master * kSteps) + static_cast<float>(step)) / kSteps, 0.0f, 1.0f);
+    input.level = stepped(state_.master, step);
     inputs_.submit(input);
 }
 

@@ -62,7 +62,7 @@ private:
     void chooseList(Time at);
     void tellAll(Time at);
     void dim(show::Input input, int step);
-    void highlight(show::Input input);
+    void light(show::Input input, RunKey::Action action);
 
     show::InputLog& inputs_;
     show::PlaybackReplica replica_;

@@ -30,6 +30,9 @@ struct RunKey {
         Brighter,
         Highlight,
         Solo,
+        LampDimmer,
+        LampBrighter,
+        Park,
         Pictures,
         SetUp,
         Corrections,
@@ -44,7 +47,7 @@ struct RunKey {
 };
 
 // All keys. README.md has the same table.
-constexpr std::array<RunKey, 20> kRunKeys = {
+constexpr std::array<RunKey, 23> kRunKeys = {
     {{letterKey(' '), "space", "GO: the loaded cue, or the next one; after a pause: go on", RunKey::Action::Go},
      {letterKey('b'), "b", "back: the cue before", RunKey::Action::Back},
      {{Key::Name::Up}, "up", "load the cue before the one that GO would enter", RunKey::Action::LoadPrevious},
@@ -59,6 +62,9 @@ constexpr std::array<RunKey, 20> kRunKeys = {
      {letterKey('+'), "+", "master: 10 % brighter", RunKey::Action::Brighter},
      {letterKey('h'), "h", "highlight: the next lamp at full, after the last one none", RunKey::Action::Highlight},
      {letterKey('o'), "o", "solo: nothing but that lamp; again: all", RunKey::Action::Solo},
+     {letterKey(','), ",", "the highlighted lamp: 10 % darker", RunKey::Action::LampDimmer},
+     {letterKey('.'), ".", "the highlighted lamp: 10 % brighter", RunKey::Action::LampBrighter},
+     {letterKey('k'), "k", "park: keep that lamp as it is, whatever the cues do; again: let it go", RunKey::Action::Park},
      {letterKey('s'), "s", "take a picture of every output", RunKey::Action::Pictures},
      {letterKey('e'), "e", "set the outputs up; again: done", RunKey::Action::SetUp},
      {letterKey('c'), "c", "take the camera's corrections back; again: allow them", RunKey::Action::Corrections},

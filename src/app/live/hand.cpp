@@ -3,10 +3,12 @@
 #include "show/names.h"
 #include "show/play/contact_inputs.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <iterator>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 namespace fantascope::app {
@@ -70,16 +72,28 @@ void Hand::tell(Time showTime) {
         if (const auto on = show::kHolds[i].on; told_.*on != state_.*on)
             events_.append({showTime, show::event::HoldChanged{static_cast<show::Hold>(i), state_.*on}});
     if (told_.master != state_.master) events_.append({showTime, show::event::MasterChanged{state_.master}});
-    if (told_.highlight != state_.highlight || told_.solo != state_.solo) {
-        const std::string lamp = state_.highlight < 0 ? "" : site_.fixtures[static_cast<std::size_t>(state_.highlight)].name;
-        events_.append({showTime, show::event::LampHighlighted{lamp, state_.solo}});
-    }
+    tellLamps(showTime);
     tellCues(showTime, {told_.cue, told_.loaded}, {state_.cue, state_.loaded}, 0);
     told_.sides.resize(state_.sides.size());
     for (std::size_t side = 0; side < state_.sides.size(); ++side)
         tellCues(showTime, told_.sides[side], state_.sides[side], static_cast<int>(side) + 1);
     told_ = state_;
     toldRevision_ = state_.revision;
+}
+
+// What the operator has done to single lamps.
+void Hand::tellLamps(Time showTime) {
+    const auto nameOf = [&](int fixture) {
+        return fixture < 0 ? std::string() : site_.fixtures[static_cast<std::size_t>(fixture)].name;
+    };
+    const auto focus = [](const show::Controls& now) { return std::tuple(now.highlight, now.solo, now.highlightLevel); };
+    if (focus(told_) != focus(state_))
+        events_.append({showTime, show::event::LampHighlighted{nameOf(state_.highlight), state_.solo, state_.highlightLevel}});
+    for (int fixture = 0; fixture < static_cast<int>(site_.fixtures.size()); ++fixture) {
+        const auto isParked = [&](const show::Controls& now) { return std::ranges::binary_search(now.parked, fixture); };
+        if (isParked(told_) != isParked(state_))
+            events_.append({showTime, show::event::LampParked{nameOf(fixture), isParked(state_)}});
+    }
 }
 
 // What has changed in a list.

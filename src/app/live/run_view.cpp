@@ -45,8 +45,11 @@ RunStatus RunView::at(Time moment, Time nextGo, int list) {
         if (next) told.nextName = sideList.cues[static_cast<std::size_t>(*next)].name;
         told.untilNext = replica_.playback().untilFollowAt(time, which);
     }
-    if (state_.highlight >= 0)
-        status.highlighted = show_.at(state_.revision).site.fixtures[static_cast<std::size_t>(state_.highlight)].name;
+    const auto lampOf = [&](int fixture) {
+        return show_.at(state_.revision).site.fixtures[static_cast<std::size_t>(fixture)].name;
+    };
+    if (state_.highlight >= 0) status.highlighted = lampOf(state_.highlight);
+    for (const int fixture : state_.parked) status.parked += (status.parked.empty() ? "" : ", ") + lampOf(fixture);
     status.controls = state_;
     if (hasNews()) status.said = std::exchange(news_, {});
     return status;
@@ -83,6 +86,8 @@ std::string howItIs(const show::ShowState& state, const show::Revision& revision
                                                             revision.show.cues[static_cast<std::size_t>(state.cue)].name);
         add(fmt::format("'{}' is dark: {}", revision.site.outputs[output].name, cue));
     }
+    for (const int fixture : state.parked)
+        add(fmt::format("'{}' is parked", revision.site.fixtures[static_cast<std::size_t>(fixture)].name));
     for (const FaultReport& fault : faults) add("not well: " + fault.what);
     return lines.empty() ? "every output shows something, and all is well" : lines;
 }

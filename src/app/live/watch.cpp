@@ -47,9 +47,10 @@ void Watch::score(std::size_t output, const CameraFrame& frame, Time showTime) {
         }
     const ShadowScore* const shadow = comparisons_[output].shadows.find(layer->source);
     const show::ShowState& shown = shown_.value();
-    const Time cueTime = shown.moves ? shown.cueTime - (shown.time - showTime) : shown.cueTime;
-    if (shadow == nullptr || cueTime < layer->begun) return;
-    const GreyImage& wanted = shadow->wanted->at(render::frameAt(shadow->source, cueTime - layer->begun));
+    const Time since = shown.moves ? fromSeconds(seconds(shown.time - showTime) * static_cast<double>(layer->speed)) : Time{};
+    const Time played = shown.cueTime - layer->behind - since - layer->begun;
+    if (shadow == nullptr || played < Time{}) return;
+    const GreyImage& wanted = shadow->wanted->at(render::frameAt(shadow->source, played));
     if (const auto iou = shadow->comparison->compare(frame.image, wanted)) ious_[name].emplace_back(showTime, *iou);
 }
 

@@ -8,12 +8,21 @@
 
 namespace fantascope::render {
 
+namespace {
+
+// The length of what plays of a video, once.
+Time partOf(const VideoSource& source) {
+    const Time end = source.stream->content().length;
+    return std::min(source.to.value_or(end), end) - source.from;
+}
+
+}  // namespace
+
 std::optional<Time> positionAt(const VideoSource& source, Time time) {
     // Neither a display's refreshes nor a file's time stamps are exact, so a frame that begins
     // within this time is shown.
     constexpr Time kTolerance = std::chrono::milliseconds(1);
-    const Time end = source.stream->content().length;
-    const Time length = std::min(source.to.value_or(end), end) - source.from;
+    const Time length = partOf(source);
     const Time played(std::llround(static_cast<double>((time + kTolerance).count()) * source.speed));
     if (source.times > 0 && played < Time{}) return source.from;
     if (source.times == 0 || played / length < source.times) return source.from + (played % length + length) % length;
@@ -76,6 +85,19 @@ std::optional<double> shapeOf(const CameraSource& source) { return ratio(source.
 std::optional<double> shapeOf(const ShadowSource& source) { return ratio(source.to - source.from); }
 
 }  // namespace
+
+show::PlayLengths playLengthsOf(const PictureSources& sources) {
+    show::PlayLengths lengths;
+    for (const auto& [id, source] : sources) {
+        const auto* const video = std::get_if<VideoSource>(&source.picture);
+        const auto* const shadow = std::get_if<ShadowSource>(&source.picture);
+        if (video != nullptr && video->times > 0)
+            lengths.add(id, fromSeconds(seconds(partOf(*video)) * video->times / video->speed));
+        if (shadow != nullptr && shadow->play == ShadowSource::Play::Once && lengthOf(*shadow) > Time{})
+            lengths.add(id, lengthOf(*shadow));
+    }
+    return lengths;
+}
 
 std::optional<double> aspectOf(const PictureSource& source) {
     return std::visit([](const auto& kind) { return shapeOf(kind); }, source.picture);

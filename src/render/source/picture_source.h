@@ -70,11 +70,11 @@ struct ImageSource {
 // A video, whose stream is shared by the outputs that show it.
 struct VideoSource {
     std::shared_ptr<VideoStream> stream;
-    Time from{};             // where it begins, in the video
+    Time from{};               // where it begins, in the video
     std::optional<Time> to{};  // where it ends, after `from`; none, or later than that: the video's end
-    int times = 0;           // so often it plays; 0: for ever
-    bool endsDark = false;   // after that nothing is seen, else its last frame
-    double speed = 1;        // positive
+    int times = 0;             // so often it plays; 0: for ever
+    bool endsDark = false;     // after that nothing is seen, else its last frame
+    double speed = 1;          // positive
 };
 // The position in the video at layer time `time`; nothing: it is over, and dark.
 std::optional<Time> positionAt(const VideoSource& source, Time time);
@@ -155,6 +155,10 @@ struct PictureSource {
 
 // All that an output can show.
 using PictureSources = show::BySource<PictureSource>;
+
+// For how long the sources play that come to an end: videos that play so many times, and shadows
+// that play once.
+show::PlayLengths playLengthsOf(const PictureSources& sources);
 
 // Width / height of a source's own picture; nothing for a source without an aspect.
 std::optional<double> aspectOf(const PictureSource& source);

@@ -29,6 +29,21 @@ constexpr float along(Curve curve, float s) {
     return s;
 }
 
+// The integral of along() from 0 to `s`.
+constexpr double areaAlong(Curve curve, double s) {
+    switch (curve) {
+        case Curve::Linear:
+            break;
+        case Curve::Smooth:
+            return s * s * s * (1 - s / 2);
+        case Curve::SlowStart:
+            return s * s * s / 3;
+        case Curve::SlowEnd:
+            return s * s * (1 - s / 3);
+    }
+    return s * s / 2;
+}
+
 // The course of one value in time: it is `from` until `start`, and `to` from `start` + `length` on.
 // Value type; thread: reentrant.
 struct Course {

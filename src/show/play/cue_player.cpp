@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <ranges>
 #include <utility>
 
 namespace fantascope::show {
@@ -19,8 +20,9 @@ using Position = CuePlayer::Position;
 std::optional<Position> followerOf(const CueList& list, const Position& now) {
     if (now.cue < 0) return std::nullopt;
     const CueList::Cue& cue = list.cues[static_cast<std::size_t>(now.cue)];
-    if (!cue.follow) return std::nullopt;
-    Position next{-1, now.entered + *cue.follow, now.follows + 1, now.turns};
+    const auto follow = cue.usualFollow();
+    if (!follow) return std::nullopt;
+    Position next{-1, now.entered + *follow, now.follows + 1, now.turns};
     int unlimited = 0;
     int& turns = cue.times > 0 ? next.turns[now.cue] : unlimited;
     if (!cue.followers.empty() && (cue.times == 0 || turns < cue.times)) {
@@ -137,6 +139,25 @@ void CuePlayer::begin(std::shared_ptr<const CueList> list, std::span<const Posit
     entry.next = followerOf(*list, way.back());
     entry.brings = broughtOn(way, entries_.back().cue, *list);
     move(std::move(entry), wanted, least, hasBegun);
+    followMedia(wanted);
+}
+
+// Works out when what plays in the newest cue is over, so that another one follows.
+void CuePlayer::followMedia(const CueList::Cue& cue) {
+    if (cue.endings.empty() || !entries_.back().next) return;
+    const Entry& last = entries_.back();
+    std::optional<Time> over = last.entered + cue.length();
+    for (const auto& [source, length] : cue.endings) {
+        const auto end = last.seen.whenOver(source, length, last.at);
+        over = over && end ? std::optional(std::max(*over, *end)) : std::nullopt;
+    }
+    for (Entry& entry : entries_ | std::views::reverse) {
+        if (entry.number != last.number) break;
+        if (over)
+            entry.next->entered = std::max({last.at, last.entered + kShortestLoop, *over + *cue.follow});
+        else
+            entry.next.reset();
+    }
 }
 
 // Adds an entry that goes on with what is seen, and one for each further moment at which the cue
@@ -154,7 +175,7 @@ void CuePlayer::move(Entry entry, const CueList::Cue& wanted, Time least, bool h
             later.brings.clear();
             entries_.push_back(std::move(later));
         }
-        entries_.back().seen = entries_.back().seen.moved(movement, wanted.look, wanted.winds);
+        entries_.back().seen = entries_.back().seen.moved(movement, wanted);
     }
 }
 
@@ -222,6 +243,7 @@ void CuePlayer::revise(std::shared_ptr<const CueList> list, Time at) {
         entry.next = followerOf(*list, {cue, entry.entered});
         if (entry.next) entry.next->entered = std::max(at, entry.next->entered);
         move(std::move(entry), wanted, list->blackoutFade, false);
+        followMedia(wanted);
     }
     followOn();
 }

@@ -28,7 +28,9 @@ namespace fantascope::show {
 //   dark.
 // - A cue with `follow` enters another cue by itself, that long after it was entered, unless another
 //   cue is entered before: the next one, or one of its `followers`, chosen by the list's seed and the
-//   number of follows since an input. In a list that loops, the first cue comes after the last.
+//   number of follows since an input. In a list that loops, the first cue comes after the last. A
+//   cue with `endings` waits for the end of what plays, as it is seen; if the list joins late, for
+//   its usual end.
 // - After a revision the cue of the same name continues. What is seen moves to the cue's new look
 //   in the rest of its new fade, but in no less than the new `blackoutFade`. Its follow counts from
 //   when the cue was entered. If the cue is gone, what is seen stays until another one is entered,
@@ -127,6 +129,7 @@ private:
     void examine(const CueList& list);
     void begin(std::shared_ptr<const CueList> list, std::span<const Position> way, Time at);
     void move(Entry entry, const CueList::Cue& wanted, Time least, bool hasBegun);
+    void followMedia(const CueList::Cue& cue);
     void drop(Time at);
     void followOn();
 

@@ -13,12 +13,12 @@
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 20> kKinds = {
-    "go",   "back", "jump", "blackout", "dark",   "light", "revise",  "correct", "exchange",  "corrections",
-    "trim", "lock", "load", "pause",    "freeze", "panic", "restore", "master",  "highlight", "solo"};
+constexpr std::array<std::string_view, 22> kKinds = {
+    "go",   "back", "jump",  "blackout", "dark",  "light",   "revise", "correct",   "exchange", "corrections", "trim",
+    "lock", "load", "pause", "freeze",   "panic", "restore", "master", "highlight", "solo",     "level",       "park"};
 constexpr std::array<std::string_view, 9> kSources = {"start",    "controller", "contact", "terminal", "screen",
                                                       "schedule", "camera",     "journal", "file"};
-static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Solo) + 1);
+static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Park) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::File) + 1);
 
 constexpr std::string_view kList = "list", kLate = "late";
@@ -26,10 +26,12 @@ constexpr std::string_view kList = "list", kLate = "late";
 // The number that says what an input is about.
 template <class AnyInput>
 auto& subjectOf(AnyInput& input) {
-    if (input.kind == Input::Kind::Highlight) return input.fixture;
+    if (input.kind == Input::Kind::Highlight || input.kind == Input::Kind::Park) return input.fixture;
     const bool hasRevision = input.kind == Input::Kind::Revise || input.kind == Input::Kind::Exchange;
     return hasRevision ? input.revision : input.cue;
 }
+
+bool hasLevel(Input::Kind kind) { return kind == Input::Kind::Master || kind == Input::Kind::Level; }
 
 std::vector<std::string_view> wordsOf(std::string_view line) {
     std::vector<std::string_view> words;
@@ -115,7 +117,7 @@ std::string lineOf(const Input& input) {
     if (input.kind == Input::Kind::Correct)
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
     if (input.kind == Input::Kind::Jump && input.ago != Time{}) line += fmt::format(" {}", input.ago.count());
-    if (input.kind == Input::Kind::Master) line += fmt::format(" {}", input.level);
+    if (hasLevel(input.kind)) line += fmt::format(" {}", input.level);
     if (input.kind == Input::Kind::Trim) line += fmt::format(" {} {}", input.trim.share, input.trim.relaysOff);
     if (input.list != 0) line += fmt::format(" {} {}", kList, input.list);
     if (input.late) line += fmt::format(" {}", kLate);
@@ -132,11 +134,11 @@ Result<Input> inputOf(std::string_view line) {
         words.resize(words.size() - 2);
     }
     const std::string_view kind = words.size() > 1 ? words[1] : "";
-    const std::size_t wanted = kWords + (kind == "correct"  ? 2 * input.shift.size()
-                                         : kind == "trim"   ? 2
-                                         : kind == "master" ? 1
-                                         : kind == "jump"   ? std::min(words.size(), kWords + 1) - std::min(words.size(), kWords)
-                                                            : 0);
+    const std::size_t wanted = kWords + (kind == "correct"                     ? 2 * input.shift.size()
+                                         : kind == "trim"                      ? 2
+                                         : kind == "master" || kind == "level" ? 1
+                                         : kind == "jump" ? std::min(words.size(), kWords + 1) - std::min(words.size(), kWords)
+                                                          : 0);
     if (words.size() != wanted) return Error(fmt::format("an input has {} words, here are {}", wanted, words.size()));
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
@@ -147,7 +149,7 @@ Result<Input> inputOf(std::string_view line) {
         for (std::size_t i = 0; i < 2 * input.shift.size(); ++i)
             input.shift[i / 2][static_cast<int>(i % 2)] = TRY(numberOf<float>(words[kWords + i]));
     if (input.kind == Input::Kind::Jump && words.size() > kWords) input.ago = Time(TRY(numberOf<Time::rep>(words[kWords])));
-    if (input.kind == Input::Kind::Master) input.level = TRY(numberOf<float>(words[kWords]));
+    if (hasLevel(input.kind)) input.level = TRY(numberOf<float>(words[kWords]));
     if (input.kind == Input::Kind::Trim) {
         input.trim.share = TRY(numberOf<float>(words[kWords]));
         input.trim.relaysOff = TRY(numberOf<int>(words[kWords + 1]));

@@ -35,7 +35,9 @@ struct Input {
         Restore,      // end the panic: everything goes on from where it was
         Master,       // dim pictures and fixtures to `level`
         Highlight,    // show fixture `fixture` at full; -1: none
-        Solo          // toggle: show nothing but that fixture, or all again
+        Solo,         // toggle: show nothing but that fixture, or all again
+        Level,        // show the highlighted fixture at `level`
+        Park          // toggle: keep fixture `fixture` as it is seen, or let it go
     };
     // Where the input came from.
     enum class Source {
@@ -57,9 +59,9 @@ struct Input {
     int revision = 0;      // for Revise: a number that InputLog::add() returned; for Exchange: that of the exchange
     PictureShift shift{};  // only for Correct
     LampTrim trim{};       // only for Trim
-    float level = 1;       // only for Master, 0..1
+    float level = 1;       // for Master and Level, 0..1
     Time ago{};            // for Jump: the cue was to be entered so long before; what has followed by now is entered
-    int fixture = -1;      // for Highlight: index into Site::fixtures
+    int fixture = -1;      // for Highlight and Park: index into Site::fixtures
     int list = 0;          // for Go, Back, Jump and Load: the list; 0: the main one, else that of CueList::sides, from 1
     bool late = false;     // a person asked for it so long before it was taken that it may not be wanted any more
     friend bool operator==(const Input&, const Input&) = default;
@@ -95,9 +97,9 @@ std::string_view nameOf(Input::Kind kind);
 std::string_view nameOf(Input::Source source);
 
 // One line, without its end: show time in nanoseconds, kind, cue (of Revise and Exchange: the
-// revision; of Highlight: the fixture), source, which, of Correct also the shift, of Trim also the
-// share and how many relays are off, of Master also the level; "list" and its number unless it is
-// the main one; and "late" if it is: "12500000000 jump 3 terminal 0".
+// revision; of Highlight and Park: the fixture), source, which, of Correct also the shift, of Trim
+// also the share and how many relays are off, of Master and Level also the level; "list" and its
+// number unless it is the main one; and "late" if it is: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads a line that lineOf() wrote. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

@@ -233,6 +233,11 @@ std::uint64_t hashOf(const CueList& list) {
         text += fmt::format("\n{} {}", cue.follow ? cue.follow->count() : -1, cue.name);
         if (!cue.followers.empty()) text += fmt::format(" {} {} {}", fmt::join(cue.followers, ","), cue.times, list.seed);
         for (const CueList::Cue::SideCue& with : cue.with) text += fmt::format(" with {} {}", with.list, with.cue);
+        if (!cue.endings.empty()) text += fmt::format(" media {}", cue.length().count());
+        for (const CueList::Cue::Ending& ending : cue.endings)
+            text += fmt::format(" {} {}", ending.source.value, ending.length.count());
+        for (const CueList::Cue::Speed& speed : cue.speeds) text += fmt::format(" speed {} {}", speed.source.value, speed.speed);
+        for (const SourceId source : cue.restarts) text += fmt::format(" restart {}", source.value);
     }
     for (const auto& side : list.sides)
         text += fmt::format("\nlist {} {} {}", side->name, side->start.value_or(-1), hashOf(*side));

@@ -54,21 +54,24 @@ LookCourses::LookCourses(const Look& look) {
     Movement at;
     at.outputs.assign(look.outputs.size(), Fade());
     for (std::size_t output = 0; output < look.outputs.size(); ++output)
-        outputs_.push_back(moved({}, look.outputs[output], look.outputs[output], at, output));
+        outputs_.push_back(moved(OutputCourse(), look.outputs[output], look.outputs[output], at, output));
     for (const float level : look.levels) levels_.push_back(Course::at(level));
     for (const std::uint8_t relay : look.relays) relays_.push_back({.on = relay});
 }
 
-LookCourses LookCourses::moved(const Movement& movement, const Look& look, std::span<const WindWish> winds) const {
+LookCourses LookCourses::moved(const Movement& movement, const CueList::Cue& to) const {
+    const Look& look = to.look;
     Look from;
     lookAt(movement.start, {}, from);
     LookCourses after = *this;
+    after.moveSpeeds(movement, to);
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
-        after.outputs_[i] = moved(outputs_[i], from.outputs[i], look.outputs[i], movement, i);
+        after.outputs_[i] = after.moved(outputs_[i], from.outputs[i], look.outputs[i], movement, i);
         if (const auto& fade = movement.outputs[i])
             after.outputs_[i].wind =
-                WindCourse(outputs_[i].wind, i < winds.size() ? winds[i] : WindWish(), movement.start, fade->longer());
+                WindCourse(outputs_[i].wind, i < to.winds.size() ? to.winds[i] : WindWish(), movement.start, fade->longer());
     }
+    after.restart(movement);
     for (std::size_t i = 0; i < levels_.size(); ++i)
         if (const auto& fade = movement.levels[i])
             after.levels_[i] = courseOf(from.levels[i], look.levels[i], movement.start, *fade);
@@ -80,12 +83,44 @@ LookCourses LookCourses::moved(const Movement& movement, const Look& look, std::
     return after;
 }
 
+PlayCourse LookCourses::playOf(SourceId source) const {
+    const auto found = std::ranges::find(plays_, source, &Play::source);
+    return found == plays_.end() ? PlayCourse() : found->course;
+}
+
+// A source that nobody sees has its new speed at once.
+void LookCourses::moveSpeeds(const Movement& movement, const CueList::Cue& to) {
+    if (!movement.speeds) return;
+    for (const CueList::Cue::Speed& wish : to.speeds)
+        if (std::ranges::find(plays_, wish.source, &Play::source) == plays_.end()) plays_.push_back({wish.source, {}});
+    for (auto& [source, course] : plays_) {
+        const float speed = to.speedOf(source), now = course.speedAt(movement.start);
+        const Time length = speed > now ? movement.speeds->in : movement.speeds->out;
+        course = shows(source, movement.start) ? course.moved(speed, movement.start, length, movement.speeds->curve)
+                                               : course.at(speed, movement.start);
+    }
+}
+
+void LookCourses::restart(const Movement& movement) {
+    for (const SourceId source : movement.restarts) {
+        const Time begun = playOf(source).ownTime(movement.begun);
+        const auto again = [&](auto& layers) {
+            for (auto& layer : layers)
+                if (layer.source == source) layer.begun = begun;
+        };
+        for (OutputCourse& output : outputs_) {
+            again(output.layers);
+            for (PictureCourse& picture : output.pictures) again(picture.layers);
+        }
+    }
+}
+
 LookCourses::OutputCourse LookCourses::moved(const OutputCourse& before, const OutputState& from, const OutputState& to,
-                                             const Movement& movement, std::size_t output) {
+                                             const Movement& movement, std::size_t output) const {
     OutputCourse after{.layers = {}, .pictures = {}, .wind = before.wind};
     const auto begunOf = [&](SourceId source) {
         const LayerState* const seen = layerOf(source, from.layers);
-        return seen != nullptr ? seen->begun : movement.begun;
+        return seen != nullptr ? seen->begun : playOf(source).ownTime(movement.begun);
     };
     const Layers seen = addedLayers(from), wanted = addedLayers(to);
     const auto move = [&](SourceId source, const Fade& fade) {
@@ -163,6 +198,23 @@ bool LookCourses::shows(SourceId source, Time time) const {
     });
 }
 
+std::optional<Time> LookCourses::whenOver(SourceId source, Time length, Time from) const {
+    std::optional<Time> over = Time::min();
+    const PlayCourse play = playOf(source);
+    const auto waitFor = [&](const auto& layer) {
+        if (!over || layer.source != source) return;
+        const auto then = play.whenIs(layer.begun + length, from);
+        over = then ? std::optional(std::max(*over, *then)) : std::nullopt;
+    };
+    for (const OutputCourse& output : outputs_) {
+        for (const LayerCourse& layer : output.layers)
+            if (layer.opacity.to > 0) waitFor(layer);
+        for (const PictureCourse& picture : output.pictures)
+            if (picture.share.to > 0) std::ranges::for_each(picture.layers, waitFor);
+    }
+    return over;
+}
+
 void LookCourses::addLayers(std::size_t output, Time time, OutputState& out) const {
     const std::size_t ofOthers = out.layers.size();
     for (const LayerCourse& layer : outputs_[output].layers) {
@@ -171,10 +223,12 @@ void LookCourses::addLayers(std::size_t output, Time time, OutputState& out) con
         const auto end = out.layers.begin() + static_cast<std::ptrdiff_t>(ofOthers);
         const auto same =
             std::find_if(out.layers.begin(), end, [&](const LayerState& other) { return other.source == layer.source; });
-        if (same == end)
-            out.layers.push_back({layer.source, opacity, Blend::Add, layer.begun});
-        else
+        if (same != end) {
             same->opacity = std::max(same->opacity, opacity);
+            continue;
+        }
+        out.layers.push_back({layer.source, opacity, Blend::Add, layer.begun});
+        play(time, out.layers.back());
     }
 }
 
@@ -183,9 +237,16 @@ void LookCourses::addPictures(std::size_t output, Time time, OutputState& out) c
         const float share = picture.share.valueAt(time);
         if (share <= 0) continue;
         const auto first = static_cast<std::uint32_t>(out.layers.size());
-        out.layers.insert(out.layers.end(), picture.layers.begin(), picture.layers.end());
+        for (const LayerState& layer : picture.layers) play(time, out.layers.emplace_back(layer));
         out.pictures.push_back({first, static_cast<std::uint32_t>(out.layers.size()), share});
     }
+}
+
+void LookCourses::play(Time time, LayerState& layer) const {
+    if (plays_.empty()) return;
+    const PlayCourse course = playOf(layer.source);
+    layer.behind = course.behindAt(time);
+    layer.speed = course.speedAt(time);
 }
 
 }  // namespace fantascope::show

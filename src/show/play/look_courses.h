@@ -1,6 +1,7 @@
 #pragma once
 
 #include "show/course/course.h"
+#include "show/course/play_course.h"
 #include "show/course/wind.h"
 #include "show/cue_list.h"
 #include "show/show_state.h"
@@ -10,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,11 +26,11 @@ public:
     // A look that has been seen forever, in the usual wind.
     explicit LookCourses(const Look& look);
 
-    // From `movement.start` on, the things that it moves go from what is seen at that moment to
-    // `look` and `winds`. All others go on as before. Relays switch at once. A source that is seen
-    // already does not begin again; another plays from `movement.begun` on. `winds`: one for each
-    // output; a missing one is the usual wind.
-    LookCourses moved(const Movement& movement, const Look& look, std::span<const WindWish> winds) const;
+    // From `movement.start` on, the things that it moves go from what is seen at that moment to the
+    // cue's look and winds. All others go on as before. Relays switch at once. A source that is
+    // seen already does not begin again, unless it is to; another plays from `movement.begun` on,
+    // and from the first at the cue's speed.
+    LookCourses moved(const Movement& movement, const CueList::Cue& to) const;
 
     // Room for the layers and pictures of one output, so that lookAt() need not allocate.
     struct Room {
@@ -42,6 +44,9 @@ public:
     static void lookAt(std::span<const LookCourses* const> lists, Time time, const Room& room, Look& out);
     // Whether a source is seen at `time` or later.
     bool shows(SourceId source, Time time) const;
+    // When a source is over wherever it is seen in the end, but no earlier than `from`; min(): it
+    // is not seen. It plays for `length` of its own time. Nothing: it comes to stand before.
+    std::optional<Time> whenOver(SourceId source, Time length, Time from) const;
     // The wind of an output at `time`; `lull` is Gusts::lullAt(time).
     Wind windAt(std::size_t output, Time time, double lull) const { return outputs_[output].wind.at(time, lull); }
 
@@ -60,11 +65,19 @@ private:
         std::vector<PictureCourse> pictures;
         WindCourse wind{WindWish()};
     };
-    static OutputCourse moved(const OutputCourse& before, const OutputState& from, const OutputState& to,
-                              const Movement& movement, std::size_t output);
+    struct Play {
+        SourceId source;
+        PlayCourse course;
+    };
+    PlayCourse playOf(SourceId source) const;
+    void moveSpeeds(const Movement& movement, const CueList::Cue& to);
+    void restart(const Movement& movement);
+    OutputCourse moved(const OutputCourse& before, const OutputState& from, const OutputState& to, const Movement& movement,
+                       std::size_t output) const;
 
     void addLayers(std::size_t output, Time time, OutputState& out) const;
     void addPictures(std::size_t output, Time time, OutputState& out) const;
+    void play(Time time, LayerState& layer) const;
 
     std::vector<OutputCourse> outputs_;
     std::vector<Course> levels_;
@@ -73,6 +86,7 @@ private:
         Time since = Time::min();  // when a cue last said so; min(): none has
     };
     std::vector<RelayState> relays_;
+    std::vector<Play> plays_;  // of sources whose speed was ever changed
 };
 
 }  // namespace fantascope::show

@@ -75,6 +75,8 @@ Outcome Playback::take(const Input& input, Time at, std::shared_ptr<const CueLis
             return Outcome::Taken;
         case Input::Kind::Highlight:
         case Input::Kind::Solo:
+        case Input::Kind::Level:
+        case Input::Kind::Park:
             return focus(input, list, at);
         case Input::Kind::Revise:
             return revise(std::move(revision), at);
@@ -131,7 +133,7 @@ Outcome Playback::moveOn(const Input& input, Time at) {
     if (paused_.last()) letGoOn(at);
     if (wanted == kNoCue && input.list == 0) {  // nothing must keep the light on
         frozen_.set(at, nullptr);
-        endFocus(at);
+        letLampsGo(at);
     }
     played.loaded.set(at, kNoCue);
     takeBackSides(cueTime_.at(at));
@@ -154,7 +156,7 @@ Outcome Playback::hold(Input::Kind kind, Time at) {
         panic_.want(1, at, now.list->blackoutFade);
         if (!paused_.last()) letGoOn(at);
     } else if (kind == Input::Kind::Panic) {
-        endFocus(at);
+        letLampsGo(at);
         panic_.want(0, at, isPanicAt(at) ? Time{} : now.list->panicFade);
         trims_.releaseRelays(at);
         cueTime_.stand(at);
@@ -171,30 +173,68 @@ Outcome Playback::hold(Input::Kind kind, Time at) {
     return Outcome::Taken;
 }
 
-// Shows a lamp, or it alone, for who focuses it.
+// Shows a lamp, or it alone, for who focuses it; or keeps it as it is.
 Outcome Playback::focus(const Input& input, const CueList& list, Time at) {
     if (isPanicAt(at)) return Outcome::Panicked;
-    if (input.kind == Input::Kind::Solo) {
+    if (input.kind == Input::Kind::Solo || input.kind == Input::Kind::Level) {
         if (highlight_.last() < 0) return Outcome::NoSuchFixture;
-        solo_.set(at, !solo_.last());
+        if (!(input.level >= 0 && input.level <= 1)) return Outcome::NoSuchLevel;
+        if (input.kind == Input::Kind::Solo)
+            solo_.set(at, !solo_.last());
+        else
+            highlightLevel_.set(at, input.level);
         return Outcome::Taken;
     }
-    if (input.fixture < -1 || input.fixture >= static_cast<int>(list.fixtures.size())) return Outcome::NoSuchFixture;
+    const bool isPark = input.kind == Input::Kind::Park;
+    const int least = isPark ? 0 : -1;
+    if (input.fixture < least || input.fixture >= static_cast<int>(list.fixtures.size())) return Outcome::NoSuchFixture;
+    if (isPark) return park(input.fixture, at);
     highlight_.set(at, input.fixture);
+    highlightLevel_.set(at, 1);
     if (input.fixture < 0) solo_.set(at, false);
     return Outcome::Taken;
 }
 
-void Playback::endFocus(Time at) {
-    highlight_.set(at, -1);
-    solo_.set(at, false);
+Outcome Playback::park(int fixture, Time at) {
+    std::vector<Parked> parked = parked_.last();
+    if (std::erase_if(parked, [&](const Parked& each) { return each.fixture == fixture; }) == 0) {
+        ShowState now;
+        stateAt(at, now);
+        const auto [first, count] = main().at(cueTime_.at(at)).list->fixtures[static_cast<std::size_t>(fixture)];
+        const auto levels = std::span(now.levels).subspan(first, count);
+        const auto next = std::ranges::upper_bound(parked, fixture, {}, &Parked::fixture);
+        parked.insert(next, {fixture, {levels.begin(), levels.end()}});
+    }
+    parked_.set(at, std::move(parked));
+    return Outcome::Taken;
 }
 
-void Playback::showFocus(const CueList& list, ShowState& out) const {
-    if (out.highlight < 0) return;
+// Ends what keeps a lamp lit, so that all is dark.
+void Playback::letLampsGo(Time at) {
+    highlight_.set(at, -1);
+    solo_.set(at, false);
+    std::vector<Parked> parked = parked_.last();
+    const auto isLit = [](float level) { return level > 0; };
+    std::erase_if(parked, [&](const Parked& each) { return std::ranges::any_of(each.levels, isLit); });
+    parked_.set(at, std::move(parked));
+}
+
+// Shows the lamps that the operator has put aside, on top of everything else.
+void Playback::showLamps(Time time, const CueList& list, ShowState& out) const {
+    const auto levelsOf = [&](int fixture) {
+        const auto [first, count] = list.fixtures[static_cast<std::size_t>(fixture)];
+        return std::span(out.levels).subspan(first, count);
+    };
+    out.parked.clear();
+    for (const auto& [fixture, levels] : parked_.at(time)) {
+        out.parked.push_back(fixture);
+        std::ranges::copy(levels, levelsOf(fixture).begin());
+    }
+    out.highlight = highlight_.at(time);
+    out.highlightLevel = highlightLevel_.at(time);
+    out.solo = solo_.at(time);
     if (out.solo) dim(out, 0);
-    const auto [first, count] = list.fixtures[static_cast<std::size_t>(out.highlight)];
-    std::ranges::fill(std::span(out.levels).subspan(first, count), 1.0f);
+    if (out.highlight >= 0) std::ranges::fill(levelsOf(out.highlight), out.highlightLevel);
 }
 
 // Keeps what is seen, or shows the cues again.
@@ -247,6 +287,8 @@ void Playback::foresee(Time time) {
     revisions_.forget(kept);
     solo_.forget(kept);
     highlight_.forget(kept);
+    highlightLevel_.forget(kept);
+    parked_.forget(kept);
     shifts_.forget(kept);
     trims_.forget(kept);
 }
@@ -349,9 +391,7 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.master = master_.wantedAt(time);
     out.locked = locked_.at(time);
     if (const float light = blackout_.at(time) * panic_.at(time) * master_.at(time); light < 1) dim(out, light);
-    out.highlight = highlight_.at(time);
-    out.solo = solo_.at(time);
-    showFocus(*entry.list, out);
+    showLamps(time, *entry.list, out);
     out.inputs = taken_.at(time);
     out.revision = revisions_.at(time);
 }

@@ -132,6 +132,26 @@ TEST_F(Keys, highlight_one_lamp_after_the_other) {
     EXPECT_EQ(pressed('h').fixture, 0);
 }
 
+// Example failure: the level is that of the master, or of the lamp before.
+TEST_F(Keys, dim_and_park_the_highlighted_lamp) {
+    const auto keys = keysWith({0, false, {}});
+    Time moment = 12s;
+    const auto pressed = [&](char letter) {
+        keys->pressedAtScreen({.letter = letter}, moment += 100ms);
+        keys->tick(moment);
+        return inputs().back();
+    };
+    pressed('k');
+    EXPECT_EQ(inputs().back().fixture, -1) << "no lamp is highlighted";
+    pressed('h');
+    pressed('-');
+    EXPECT_EQ(pressed(',').kind, Kind::Level);
+    EXPECT_FLOAT_EQ(pressed(',').level, 0.8f);
+    EXPECT_FLOAT_EQ(pressed('.').level, 0.9f);
+    EXPECT_EQ(pressed('k').kind, Kind::Park);
+    EXPECT_EQ(inputs().back().fixture, 0);
+}
+
 TEST_F(Keys, move_the_master_by_a_tenth) {
     const auto keys = keysWith({0, false, {}});
     const auto masterAfter = [&](char letter, int presses) {

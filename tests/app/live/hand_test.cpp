@@ -72,7 +72,10 @@ TEST_F(HandPart, tells_what_the_operator_holds) {
     EXPECT_EQ(told({.kind = Kind::Master, .level = 0.7f}), "master 70 %");
     const std::string lamp = run_.site.fixtures[0].name;
     EXPECT_EQ(told({.kind = Kind::Highlight, .fixture = 0}), "highlight: '" + lamp + "' is at full");
-    EXPECT_EQ(told({.kind = Kind::Solo}), "solo: nothing is seen but '" + lamp + "'");
+    EXPECT_EQ(told({.kind = Kind::Solo}), "solo: nothing is seen but '" + lamp + "', at full");
+    EXPECT_EQ(told({.kind = Kind::Level, .level = 0.4f}), "solo: nothing is seen but '" + lamp + "', at 40 %");
+    EXPECT_EQ(told({.kind = Kind::Park, .fixture = 0}), "parked: '" + lamp + "' stays as it is");
+    EXPECT_EQ(told({.kind = Kind::Park, .fixture = 0}), "'" + lamp + "' is parked no more");
     EXPECT_EQ(told({.kind = Kind::Highlight}), "no lamp is highlighted any more");
     EXPECT_EQ(told({.kind = Kind::Panic}), "PANIC: pictures and lamps go dark, relays are safe, the cues stand still");
     EXPECT_EQ(told({.kind = Kind::Go}), "ignored: all is dark after a panic; restore comes first");

@@ -11,8 +11,12 @@
 #include <rapidcheck.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <optional>
+#include <set>
 
 namespace fantascope::show {
 namespace {
@@ -21,6 +25,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kOutputs = 2, kLevels = 3, kRelays = 2;
 constexpr std::uint32_t kSources = 3;
+constexpr float kUnseen = 1e-6f;  // an opacity so small may be rounded to 0
 
 // What one thing does in one cue.
 struct Move {
@@ -60,8 +65,130 @@ private:
     std::vector<Wish> wishes_;
 };
 
+// What has been played of a source at a constant rate of change of its speed: Simpson's rule is
+// exact for the curves.
+class ModelPlay {
+public:
+    float speedAt(Time time) const {
+        const Change& now = changeAt(time);
+        const double share = time - now.at >= now.length ? 1 : seconds(time - now.at) / seconds(now.length);
+        const double bent[] = {share, share * share * (3 - 2 * share), share * share, 1 - (1 - share) * (1 - share)};
+        return static_cast<float>(now.from + (now.to - now.from) * (time < now.at ? 1 : bent[static_cast<int>(now.curve)]));
+    }
+    void change(float speed, Time at, const Fade& fade) {
+        const float from = speedAt(at);
+        changes_.push_back({at, from, speed, speed > from ? fade.in : fade.out, fade.curve});
+    }
+    // Own time, seconds. Before the newest change it is as if its speed had always been.
+    double own(Time time) const {
+        double played = 0;
+        for (std::size_t i = 0; i < changes_.size(); ++i) {
+            const bool isLast = i + 1 == changes_.size();
+            const Time from = changes_[i].at, until = isLast ? time : changes_[i + 1].at;
+            const Time settled = from + changes_[i].length, bend = std::clamp(settled, from, std::max(from, until));
+            if (i > 0) played += integral(i, from, bend);
+            played += static_cast<double>(changes_[i].to) * seconds(until - (i > 0 ? bend : from));
+        }
+        return played;
+    }
+    // Nothing: never.
+    std::optional<Time> whenIs(double own, Time from) const {
+        Time before = from, after = from + 1000s;
+        if (this->own(from) >= own) return from;
+        if (this->own(after) < own) return std::nullopt;
+        while (after - before > 1ns) {
+            const Time middle = before + (after - before) / 2;
+            (this->own(middle) < own ? before : after) = middle;
+        }
+        return after;
+    }
+
+private:
+    struct Change {
+        Time at;
+        float from, to;
+        Time length;
+        Curve curve;
+    };
+    const Change& changeAt(Time time) const {
+        const Change* now = &changes_.back();
+        for (const Change& change : changes_)
+            if (change.at <= time) now = &change;
+        return *now;
+    }
+    double integral(std::size_t change, Time from, Time until) const {
+        if (until <= from) return 0;
+        const auto speed = [&](double share) {
+            const double s = seconds(until - from) * share / seconds(changes_[change].length);
+            const double bent[] = {s, s * s * (3 - 2 * s), s * s, 1 - (1 - s) * (1 - s)};
+            return changes_[change].from +
+                   (changes_[change].to - changes_[change].from) * bent[static_cast<int>(changes_[change].curve)];
+        };
+        return seconds(until - from) * (speed(0) + 4 * speed(0.5) + speed(1)) / 6;
+    }
+    std::vector<Change> changes_{{Time{}, 1, 1, Time{}, Curve::Linear}};
+};
+
+// The part of a cue that a thing is in; the cue itself if it is in none.
+Move moveOf(const CueList::Cue& cue, const std::function<bool(const CueList::Part&)>& isIn, float target) {
+    for (const CueList::Part& part : cue.parts)
+        if (isIn(part)) return {part.wait, part.fade, target};
+    return {cue.wait, cue.fade, target};
+}
+bool has(const std::vector<std::size_t>& things, std::size_t thing) { return std::ranges::find(things, thing) != things.end(); }
+
+Move moveOfLevel(const CueList::Cue& cue, std::size_t level) {
+    return moveOf(
+        cue, [&](const CueList::Part& part) { return has(part.levels, level); }, cue.look.levels[level]);
+}
+Move moveOfRelay(const CueList::Cue& cue, std::size_t relay) {
+    Move move = moveOf(
+        cue, [&](const CueList::Part& part) { return has(part.relays, relay); }, cue.look.relays[relay]);
+    move.fade = Fade();
+    move.switches = true;
+    move.tracks = cue.tracksRelays.size() > relay && cue.tracksRelays[relay] != 0;
+    return move;
+}
+Move moveOfLayer(const CueList::Cue& cue, std::size_t output, SourceId source) {
+    float target = 0;
+    for (const LayerState& layer : cue.look.outputs[output].layers)
+        if (layer.source == source) target = layer.opacity;
+    const auto alone = [&](const CueList::Part& part) {
+        return std::ranges::any_of(part.layers,
+                                   [&](const auto& layer) { return layer.output == output && layer.source == source; });
+    };
+    if (std::ranges::any_of(cue.parts, alone)) return moveOf(cue, alone, target);
+    return moveOf(
+        cue, [&](const CueList::Part& part) { return has(part.outputs, output); }, target);
+}
+
 // Finds what is seen by going through everything that happened from the beginning.
 class Model {
+    // What was entered, and when.
+    struct Entered {
+        Time at, cueTime;
+        Time seen;                  // the cue time from which on it is; later than `cueTime` if the cue was joined
+        int cue;                    // -1: the dark
+        std::vector<int> turned{};  // the cues that a follower has followed since an input, each as often
+        int follows = 0;            // since an input
+    };
+    // From a moment on, cue time goes on, or stands still.
+    struct Run {
+        Time at, cueTime;
+        bool runs;
+    };
+    struct Freeze {
+        Time at;
+        bool on;
+        std::vector<std::size_t> entered;  // before it, in each list
+    };
+    struct Track {
+        const CueList* list;
+        CueList::Cue dark;
+        std::vector<Entered> entered;
+        int loaded = -1;
+    };
+
 public:
     explicit Model(const CueList& list) : list_(list) {
         const auto add = [&](const CueList& added) {
@@ -206,39 +333,131 @@ public:
     }
     Time newest() const { return newest_; }
 
+    // How the sources of a list are played.
+    struct Playing {
+        struct Layer {
+            float from = 0, to = 0;
+            Time start{};
+            Fade fade{};
+            double begun = 0;
+            double orBegun = 0;  // if a rounding decides whether it was still seen
+            float at(Time time) const {
+                const Time length = to > from ? fade.in : fade.out;
+                const double share = time - start >= length ? 1 : std::max(0., seconds(time - start) / seconds(length));
+                const double bent[] = {share, share * share * (3 - 2 * share), share * share, 1 - (1 - share) * (1 - share)};
+                return static_cast<float>(from + (to - from) * bent[static_cast<int>(fade.curve)]);
+            }
+            bool isSeenFrom(Time time) const { return to != 0 || (from != 0 && time - start < (to > from ? fade.in : fade.out)); }
+        };
+        std::array<std::array<Layer, kSources>, kOutputs> layers;
+        std::array<ModelPlay, kSources> plays;
+        Time last{};  // movement
+    };
+    // At a cue time, after the first `count` cues that were entered.
+    Playing playing(const Track& track, std::size_t count, Time now) const {
+        Playing playing;
+        for (std::size_t i = 0; i < count && track.entered[i].seen <= now; ++i) {
+            const bool isLast = i + 1 == count || track.entered[i + 1].seen > now;
+            play(track, track.entered[i], isLast ? now : track.entered[i + 1].seen, playing);
+        }
+        return playing;
+    }
+    // How much of a source is played on an output, in the first list that shows it; nothing: that
+    // is a matter of rounding.
+    std::optional<std::pair<double, double>> playedAt(Time time, std::size_t output, std::size_t source) const {
+        for (std::size_t list = 0; list < tracks_.size(); ++list) {
+            std::size_t count = 0;
+            while (count < tracks_[list].entered.size() && tracks_[list].entered[count].at <= time) ++count;
+            if (isFrozen(time)) count = freezeAt(time)->entered[list];
+            const Time now = cueTime(isFrozen(time) ? freezeAt(time)->at : time);
+            const Playing state = playing(tracks_[list], count, now);
+            const auto& layer = state.layers[output][source];
+            if (layer.at(now) > 0 && layer.at(now) < kUnseen) return std::nullopt;
+            const double own = state.plays[source].own(now);
+            if (layer.at(now) > 0) return std::pair(own - layer.begun, own - layer.orBegun);
+        }
+        return std::nullopt;
+    }
+
 private:
-    struct Entered {
-        Time at, cueTime;
-        Time seen;                  // the cue time from which on it is; later than `cueTime` if the cue was joined
-        int cue;                    // -1: the dark
-        std::vector<int> turned{};  // the cues that a follower has followed since an input, each as often
-        int follows = 0;            // since an input
-    };
-    // From a moment on, cue time goes on, or stands still.
-    struct Run {
-        Time at, cueTime;
-        bool runs;
-    };
-    struct Freeze {
-        Time at;
-        bool on;
-        std::vector<std::size_t> entered;  // before it, in each list
-    };
-    struct Track {
-        const CueList* list;
-        CueList::Cue dark;
-        std::vector<Entered> entered;
-        int loaded = -1;
-    };
     void freeze(bool on) {
         freezes_.push_back({newest_, on, {}});
         for (const Track& track : tracks_) freezes_.back().entered.push_back(track.entered.size());
+    }
+    // What a cue does to the sources' layers until a cue time.
+    void play(const Track& track, const Entered& entered, Time until, Playing& playing) const {
+        const CueList::Cue& cue = cueOf(track, entered.cue);
+        const bool isJoined = entered.cueTime < entered.seen;
+        const auto timed = [&](Time wait, Fade fade) {
+            const Time begins = entered.cueTime + wait;
+            if (begins >= entered.seen) return std::pair(begins, fade);
+            const auto rest = [&](Time length) { return std::max(begins + length - entered.seen, list_.blackoutFade); };
+            return std::pair(entered.seen, Fade(rest(fade.in), rest(fade.out), fade.curve));
+        };
+        const auto main = timed(cue.wait, cue.fade);
+        std::set<Time> starts{main.first};
+        for (const CueList::Part& part : cue.parts) starts.insert(timed(part.wait, part.fade).first);
+        for (const Time start : starts) {
+            if (start > until) break;
+            playing.last = start;
+            for (std::uint32_t source = 0; source < kSources && start == main.first; ++source) {
+                bool isSeen = false;
+                for (const auto& output : playing.layers) isSeen = isSeen || output[source].isSeenFrom(start);
+                playing.plays[source].change(cue.speedOf({source}), start, isSeen ? main.second : Fade());
+            }
+            const Time begun = isJoined ? std::min(start, entered.cueTime + cue.wait) : start;
+            for (std::size_t output = 0; output < kOutputs; ++output)
+                for (std::uint32_t source = 0; source < kSources; ++source) {
+                    auto& layer = playing.layers[output][source];
+                    const Move move = moveOfLayer(cue, output, {source});
+                    const double own = playing.plays[source].own(begun);
+                    if (const auto [begins, fade] = timed(move.wait, move.fade); begins == start)
+                        layer = {layer.at(start),
+                                 move.target,
+                                 start,
+                                 fade,
+                                 layer.at(start) > 0 ? layer.begun : own,
+                                 layer.at(start) > kUnseen ? layer.orBegun : own};
+                    const bool restarts = std::ranges::find(cue.restarts, SourceId{source}) != cue.restarts.end();
+                    if (restarts && start == main.first && entered.cueTime + cue.wait >= entered.seen)
+                        layer.begun = layer.orBegun = own;
+                }
+        }
+    }
+    // When another cue follows the last one that was entered; nothing: never.
+    std::optional<Time> followsAt(const Track& track) const {
+        const Entered& last = track.entered.back();
+        if (last.cue < 0) return std::nullopt;
+        const CueList::Cue& cue = cueOf(track, last.cue);
+        if (!cue.follow || cue.endings.empty() || !usuallyFollowsAt(track, last)) return usuallyFollowsAt(track, last);
+        const Playing end = playing(track, track.entered.size(), last.seen + 1000s);
+        Time over = last.cueTime + cue.length();
+        for (const auto& [source, length] : cue.endings)
+            for (const auto& output : end.layers) {
+                if (output[source.value].to == 0) continue;
+                const auto then = end.plays[source.value].whenIs(output[source.value].begun + seconds(length), end.last);
+                if (!then) return std::nullopt;
+                over = std::max(over, *then);
+            }
+        return std::max({end.last, last.cueTime + 100ms, over + *cue.follow});
+    }
+    // The same if its sources come with it.
+    static std::optional<Time> usuallyFollowsAt(const Track& track, const Entered& entered) {
+        const CueList::Cue& cue = cueOf(track, entered.cue);
+        if (entered.cue < 0 || !cue.follow) return std::nullopt;
+        if (cue.endings.empty()) return entered.cueTime + *cue.follow;
+        Time over = cue.length();
+        for (const auto& [source, length] : cue.endings) {
+            if (cue.speedOf(source) == 0) return std::nullopt;
+            over = std::max(over, cue.wait + Time(std::llround(double(length.count()) / double(cue.speedOf(source)))));
+        }
+        return entered.cueTime + std::max<Time>(100ms, over + *cue.follow);
     }
     // What follows in a list by a cue time; nothing: nothing does.
     std::optional<Entered> followerBy(const Track& track, Time cueTime) const {
         if (track.entered.empty()) return std::nullopt;
         Entered follower = track.entered.back();
-        if (!follow(track, follower, cueTime)) return std::nullopt;
+        if (!follow(track, follower, followsAt(track), cueTime)) return std::nullopt;
         follower.seen = follower.cueTime;
         follower.at = runs_.back().at + (follower.cueTime - runs_.back().cueTime);
         return follower;
@@ -263,7 +482,9 @@ private:
             }
             if (!wanted) continue;
             advance(tracks_[side], wanted->seen);
-            while (wanted->cueTime < wanted->seen && follow(tracks_[side], *wanted, wanted->seen)) continue;
+            while (wanted->cueTime < wanted->seen &&
+                   follow(tracks_[side], *wanted, usuallyFollowsAt(tracks_[side], *wanted), wanted->seen))
+                continue;
             tracks_[side].entered.push_back(*wanted);
         }
     }
@@ -298,16 +519,15 @@ private:
         const Time now = cueTime(newest_);
         Entered joined{newest_, now - (input.kind == Input::Kind::Jump ? input.ago : Time{}), now, wanted, {}, 0};
         std::vector<Entered> way{joined};
-        while (joined.cueTime < now && follow(track, joined, now)) way.push_back(joined);
+        while (joined.cueTime < now && follow(track, joined, usuallyFollowsAt(track, joined), now)) way.push_back(joined);
         entered.push_back(joined);
         if (input.list == 0) bring(cue, way);
         return true;
     }
-    // Goes on to the cue that follows by `cueTime`. Returns whether one does.
-    bool follow(const Track& track, Entered& entered, Time cueTime) const {
-        if (entered.cue < 0) return false;
+    // Goes on to the cue that follows `at`, if that is by `cueTime`. Returns whether it is.
+    bool follow(const Track& track, Entered& entered, std::optional<Time> at, Time cueTime) const {
+        if (!at || *at > cueTime) return false;
         const CueList::Cue& cue = cueOf(track, entered.cue);
-        if (!cue.follow || entered.cueTime + *cue.follow > cueTime) return false;
         const auto turns = static_cast<int>(std::ranges::count(entered.turned, entered.cue));
         if (!cue.followers.empty() && (cue.times == 0 || turns < cue.times)) {
             const std::uint64_t chance = streamSeed(
@@ -319,7 +539,7 @@ private:
             std::erase(entered.turned, entered.cue);
             entered.cue = next(track, entered.cue);
         }
-        entered.cueTime += *cue.follow;
+        entered.cueTime = *at;
         ++entered.follows;
         return true;
     }
@@ -359,39 +579,6 @@ private:
     bool isLocked_ = false, isPaused_ = false;
 };
 
-// The part of a cue that a thing is in; the cue itself if it is in none.
-Move moveOf(const CueList::Cue& cue, const std::function<bool(const CueList::Part&)>& isIn, float target) {
-    for (const CueList::Part& part : cue.parts)
-        if (isIn(part)) return {part.wait, part.fade, target};
-    return {cue.wait, cue.fade, target};
-}
-bool has(const std::vector<std::size_t>& things, std::size_t thing) { return std::ranges::find(things, thing) != things.end(); }
-
-Move moveOfLevel(const CueList::Cue& cue, std::size_t level) {
-    return moveOf(
-        cue, [&](const CueList::Part& part) { return has(part.levels, level); }, cue.look.levels[level]);
-}
-Move moveOfRelay(const CueList::Cue& cue, std::size_t relay) {
-    Move move = moveOf(
-        cue, [&](const CueList::Part& part) { return has(part.relays, relay); }, cue.look.relays[relay]);
-    move.fade = Fade();
-    move.switches = true;
-    move.tracks = cue.tracksRelays.size() > relay && cue.tracksRelays[relay] != 0;
-    return move;
-}
-Move moveOfLayer(const CueList::Cue& cue, std::size_t output, SourceId source) {
-    float target = 0;
-    for (const LayerState& layer : cue.look.outputs[output].layers)
-        if (layer.source == source) target = layer.opacity;
-    const auto alone = [&](const CueList::Part& part) {
-        return std::ranges::any_of(part.layers,
-                                   [&](const auto& layer) { return layer.output == output && layer.source == source; });
-    };
-    if (std::ranges::any_of(cue.parts, alone)) return moveOf(cue, alone, target);
-    return moveOf(
-        cue, [&](const CueList::Part& part) { return has(part.outputs, output); }, target);
-}
-
 // Waits and fades are often 0, and often end with each other.
 Time anyTime() { return *rc::gen::element(0, 0, 500, 1000, 1700, 3000) * 1ms; }
 Fade anyFade() { return {anyTime(), anyTime(), static_cast<Curve>(*rc::gen::inRange(0, 4))}; }
@@ -421,6 +608,13 @@ CueList::Cue anyCue() {
         cue.tracksRelays.push_back(*rc::gen::arbitrary<bool>());
     }
     if (*rc::gen::inRange(0, 2) == 0) cue.follow = anyTime();
+    for (std::uint32_t source = 0; source < kSources; ++source) {
+        if (const float speed = *rc::gen::element(1.f, 1.f, 0.f, 0.5f, 2.f); speed != 1) cue.speeds.push_back({{source}, speed});
+        if (*rc::gen::inRange(0, 6) == 0) cue.restarts.push_back({source});
+        if (cue.follow && *rc::gen::inRange(0, 6) == 0)
+            cue.endings.push_back({{source}, *rc::gen::element(500, 3000, 8000) * 1ms});
+    }
+    if (!cue.endings.empty()) *cue.follow += 137us;  // so that a nanosecond of rounding decides nothing
     return cue;
 }
 
@@ -520,6 +714,13 @@ void compare(const Playback& playback, const Model& model, const CueList& list, 
         for (std::uint32_t source = 0; source < kSources; ++source) {
             const auto move = [&](const CueList::Cue& cue) { return moveOfLayer(cue, output, {source}); };
             RC_ASSERT(isNear(opacityOf(state, output, {source}), light * highest(0, move)));
+            for (const LayerState& layer : state.outputs[output].layers) {
+                if (layer.source.value != source) continue;
+                const auto played = model.playedAt(time, output, source);
+                if (!played) continue;
+                const double engine = seconds(state.cueTime - layer.behind - layer.begun);
+                RC_ASSERT(std::min(std::abs(engine - played->first), std::abs(engine - played->second)) < 1e-6);
+            }
         }
 }
 

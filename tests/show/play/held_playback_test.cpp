@@ -270,5 +270,45 @@ TEST(HeldPlayback, a_panic_and_the_end_of_the_night_end_a_highlight) {
     EXPECT_EQ(stateOf(end, 10s).highlight, -1);
 }
 
+// For a work light, or a lamp that is broken.
+TEST(HeldPlayback, a_parked_lamp_stays_as_it_was_seen) {
+    CueList list = cues();
+    list.fixtures = {{0, 1}, {1, 1}};
+    const auto park = [](Time at, int fixture) { return Input{.at = at, .kind = Kind::Park, .fixture = fixture}; };
+    Playback playback = show::after(list, {{0s, Kind::Go},
+                                           {.at = 3s, .kind = Kind::Highlight, .fixture = 1},
+                                           {.at = 3s, .kind = Kind::Level, .level = 0.25f},
+                                           park(4s, 1),
+                                           {.at = 5s, .kind = Kind::Highlight},
+                                           {7s, Kind::Dark}});
+    EXPECT_THAT(stateOf(playback, 3500ms).levels, ElementsAre(1, 0.25f));
+    EXPECT_THAT(stateOf(playback, 3500ms).parked, IsEmpty());
+    EXPECT_THAT(stateOf(playback, 6s).levels, ElementsAre(1, 0.25f));
+    EXPECT_THAT(stateOf(playback, 6s).parked, ElementsAre(1));
+    EXPECT_THAT(stateOf(playback, 9s).levels, ElementsAre(0, 0.25f)) << "through a blackout";
+    ASSERT_EQ(playback.apply(park(9s, 0)), Outcome::Taken);
+    ASSERT_EQ(playback.apply({10s, Kind::Light}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 12s).levels, ElementsAre(0, 0.25f));
+    ASSERT_EQ(playback.apply({.at = 12s, .kind = Kind::Highlight, .fixture = 0}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 12s).levels, ElementsAre(1, 0.25f)) << "a highlight shows it all the same";
+    ASSERT_EQ(playback.apply({.at = 13s, .kind = Kind::Highlight}), Outcome::Taken);
+    ASSERT_EQ(playback.apply(park(14s, 1)), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 14s).parked, ElementsAre(0));
+    EXPECT_EQ(playback.apply(park(14s, 2)), Outcome::NoSuchFixture);
+    EXPECT_EQ(playback.apply(park(14s, -1)), Outcome::NoSuchFixture);
+}
+
+// Example failures: a work light burns through a panic, or all night; a broken lamp comes back.
+TEST(HeldPlayback, a_panic_and_the_end_of_the_night_let_lit_lamps_go) {
+    CueList list = cues();
+    list.fixtures = {{0, 1}, {1, 1}};
+    const Input lit{.at = 3s, .kind = Kind::Park, .fixture = 0}, dark{.at = 3s, .kind = Kind::Park, .fixture = 1};
+    for (const Input& end : {Input{.at = 4s, .kind = Kind::Panic}, Input{.at = 4s, .kind = Kind::Jump, .cue = -1}}) {
+        const Playback playback = show::after(list, {{0s, Kind::Go}, lit, dark, end});
+        EXPECT_THAT(stateOf(playback, 10s).levels, ElementsAre(0, 0));
+        EXPECT_THAT(stateOf(playback, 10s).parked, ElementsAre(1));
+    }
+}
+
 }  // namespace
 }  // namespace fantascope::show
