@@ -91,6 +91,40 @@ TEST_F(ShowWithPictures, is_exported_frame_by_frame) {
     }
 }
 
+// Example failures: the length of the video is not known to the cues; a slower video jumps; the
+// decoder does not follow.
+TEST_F(ShowWithPictures, plays_a_video_as_its_cues_say) {
+    folder_.file("show.yaml", R"(fantascope: show
+version: 2
+title: Test
+start: Wet
+sources: {rain: {video: {file: rain.mp4, times: 1}}}
+looks:
+  wet: {outputs: {left: [{source: rain}]}}
+  slow: {play: {rain: 0.5}}
+  again: {play: {rain: {speed: 2, restart: true}}}
+cues:
+  - {name: Wet, look: wet, fade: 0, follow: 0.8}
+  - {name: Slow, look: slow, fade: 0, follow: {after_media: 0.4}}
+  - {name: Again, look: again, fade: 0}
+)");
+    const Outcome done = run({"export", ".", "--output", "left", "--canvas", "--fps", "25", "--size", "128x72", "--seconds",
+                              "3.2", "-o", "a.mkv", "--alpha", "none"});
+    ASSERT_THAT(done, exits(0));
+    std::vector<int> seen, wanted;
+    for (const Rgba16Image& picture : readVideo(folder_ / "a.mkv").frames) {
+        RgbaImage frame(128, 72);
+        for (std::size_t p = 0; p < frame.pixels().size(); ++p)
+            frame.pixels()[p].g = static_cast<std::uint8_t>(picture.pixels()[p].g / 257);
+        seen.push_back(numberOn(frame));
+    }
+    for (int i = 0; i < 20; ++i) wanted.push_back(i + 1);
+    for (int i = 0; i < 40; ++i) wanted.push_back(21 + i / 2);
+    for (int i = 0; i < 10; ++i) wanted.push_back(40);
+    for (int i = 0; i < 10; ++i) wanted.push_back(2 * i + 1);
+    EXPECT_EQ(seen, wanted);
+}
+
 TEST_F(ShowWithPictures, says_where_in_the_show_a_broken_file_is_named) {
     folder_.file("rain.mp4", "rain");
     const Outcome done = run({"rehearse", ".", "--seconds", "1", "--as-fast-as-possible"});

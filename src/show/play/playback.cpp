@@ -178,11 +178,12 @@ Outcome Playback::focus(const Input& input, const CueList& list, Time at) {
     if (isPanicAt(at)) return Outcome::Panicked;
     if (input.kind == Input::Kind::Solo || input.kind == Input::Kind::Level) {
         if (highlight_.last() < 0) return Outcome::NoSuchFixture;
-        if (!(input.level >= 0 && input.level <= 1)) return Outcome::NoSuchLevel;
         if (input.kind == Input::Kind::Solo)
             solo_.set(at, !solo_.last());
-        else
+        else if (input.level >= 0 && input.level <= 1)
             highlightLevel_.set(at, input.level);
+        else
+            return Outcome::NoSuchLevel;
         return Outcome::Taken;
     }
     const bool isPark = input.kind == Input::Kind::Park;

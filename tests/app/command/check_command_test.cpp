@@ -12,6 +12,7 @@
 #include "scratch_folder.h"
 #include "test_video.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <sstream>
@@ -185,6 +186,28 @@ TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
     const Checked checked = check(folder, {{show}, std::nullopt});
     EXPECT_THAT(checked.lines, HasSubstr("\nleaves.pattern.yaml:3:8: guide: leaves.png: "));
     EXPECT_EQ(checked.refusal, "1 of 3 files refused");
+}
+
+// Example failure: a video that loops for ever is waited for all night.
+TEST(Check, a_cue_can_wait_only_for_what_comes_to_an_end) {
+    const ScratchFolder folder;
+    writeVideo(folder.path() / "rain.mp4", {.rate = 30}, 60, [](int number) { return numbered({64, 64}, number); });
+    const auto site = folder.file("site.yaml", kSite);
+    const auto checked = [&](const std::string& video) {
+        const auto show = folder.file("show.yaml", fmt::format(R"(fantascope: show
+version: 2
+title: Test
+sources: {{rain: {{video: {}}}}}
+looks: {{wet: {{outputs: {{left: [{{source: rain}}]}}}}}}
+cues: [{{name: Wet, look: wet, fade: 0, follow: {{after_media: 1}}}}, {{name: Dry, look: wet, fade: 0}}]
+)",
+                                                               video));
+        return check(folder, {{show}, site}).lines;
+    };
+    EXPECT_THAT(checked("rain.mp4"),
+                HasSubstr("show.yaml:6:64: cues[0].follow.after_media: nothing that is seen in this cue comes "
+                          "to an end; give its video 'times', or its shadow 'play: once'"));
+    EXPECT_THAT(checked("{file: rain.mp4, times: 2}"), HasSubstr("ok show.yaml"));
 }
 
 // Example failure: the show loads, and the projector stays dark since the video was copied by

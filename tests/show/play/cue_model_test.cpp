@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -177,6 +178,14 @@ class Model {
         Time at, cueTime;
         bool runs;
     };
+    // What the operator has done to single lamps by a moment.
+    struct Lamps {
+        Time at = Time::min();
+        int highlight = -1;
+        float level = 1;
+        bool solo = false;
+        std::map<int, float> parked{};
+    };
     struct Freeze {
         Time at;
         bool on;
@@ -243,7 +252,13 @@ public:
                 if (isPanic) return false;
                 freeze(freezes_.empty() || !freezes_.back().on);
                 return true;
+            case Input::Kind::Highlight:
+            case Input::Kind::Solo:
+            case Input::Kind::Level:
+            case Input::Kind::Park:
+                return !isPanic && focus(input);
             case Input::Kind::Panic:
+                letLampsGo();
                 panic_.want(0, newest_, isPanic ? 0s : list_.panicFade);
                 run(false);
                 return true;
@@ -331,6 +346,22 @@ public:
         }
         return {valueOf(now), since};
     }
+    // The highest of all lists.
+    float highestAt(Time time, float dark, const std::function<Move(const CueList::Cue&)>& moveIn) const {
+        float most = 0;
+        for (std::size_t i = 0; i < tracks_.size(); ++i) most = std::max(most, valueAt(time, i, dark, moveIn).value);
+        return most;
+    }
+    bool isSolo(Time time) const { return lampsAt(time).solo; }
+    float levelAt(Time time, std::size_t level) const {
+        const auto lamp = static_cast<int>(level);
+        const Lamps& lamps = lampsAt(time);
+        if (lamps.highlight == lamp) return lamps.level;
+        if (lamps.solo) return 0;
+        if (const auto parked = lamps.parked.find(lamp); parked != lamps.parked.end()) return parked->second;
+        return lightAt(time) *
+               highestAt(time, list_.dark.levels[level], [&](const CueList::Cue& cue) { return moveOfLevel(cue, level); });
+    }
     Time newest() const { return newest_; }
 
     // How the sources of a list are played.
@@ -380,6 +411,37 @@ public:
     }
 
 private:
+    bool focus(const Input& input) {
+        Lamps lamps = lamps_.back();
+        lamps.at = newest_;
+        const bool isThere = input.fixture >= 0 && input.fixture < static_cast<int>(kLevels);
+        if (input.kind == Input::Kind::Highlight) {
+            if (!isThere && input.fixture != -1) return false;
+            lamps.highlight = input.fixture;
+            lamps.level = 1;
+            lamps.solo = lamps.solo && isThere;
+        } else if (input.kind == Input::Kind::Park) {
+            if (!isThere) return false;
+            if (lamps.parked.erase(input.fixture) == 0)
+                lamps.parked[input.fixture] = levelAt(newest_, static_cast<std::size_t>(input.fixture));
+        } else {
+            if (lamps.highlight < 0) return false;
+            if (input.kind == Input::Kind::Solo)
+                lamps.solo = !lamps.solo;
+            else if (input.level >= 0 && input.level <= 1)
+                lamps.level = input.level;
+            else
+                return false;
+        }
+        lamps_.push_back(lamps);
+        return true;
+    }
+    void letLampsGo() {
+        Lamps lamps{.at = newest_};
+        for (const auto& [lamp, level] : lamps_.back().parked)
+            if (level == 0) lamps.parked[lamp] = level;
+        lamps_.push_back(lamps);
+    }
     void freeze(bool on) {
         freezes_.push_back({newest_, on, {}});
         for (const Track& track : tracks_) freezes_.back().entered.push_back(track.entered.size());
@@ -516,6 +578,7 @@ private:
         isPaused_ = false;
         track.loaded = -1;
         if (wanted < 0 && input.list == 0 && isFrozen(newest_)) freeze(false);
+        if (wanted < 0 && input.list == 0) letLampsGo();
         const Time now = cueTime(newest_);
         Entered joined{newest_, now - (input.kind == Input::Kind::Jump ? input.ago : Time{}), now, wanted, {}, 0};
         std::vector<Entered> way{joined};
@@ -554,6 +617,12 @@ private:
             if (candidate.at <= time) run = &candidate;
         return run->runs ? run->cueTime + (time - run->at) : run->cueTime;
     }
+    const Lamps& lampsAt(Time time) const {
+        const Lamps* lamps = &lamps_.front();
+        for (const Lamps& candidate : lamps_)
+            if (candidate.at <= time) lamps = &candidate;
+        return *lamps;
+    }
     const Freeze* freezeAt(Time time) const {
         const Freeze* freeze = nullptr;
         for (const Freeze& candidate : freezes_)
@@ -573,6 +642,7 @@ private:
     std::vector<Track> tracks_;  // the main list first
     std::vector<Run> runs_{{Time{}, Time{}, true}};
     std::vector<Freeze> freezes_;
+    std::vector<Lamps> lamps_{Lamps()};
     ModelLight blackout_, panic_, master_;
     Time newest_ = Time::min();
     std::optional<Time> wentOn_;
@@ -626,6 +696,7 @@ CueList anyList(std::uint64_t seed = 1) {
     list.blackoutFade = 500ms;
     list.panicFade = anyTime();
     list.darkFade = anyTime();
+    for (std::size_t level = 0; level < kLevels; ++level) list.fixtures.push_back({level, 1});
     for (int cues = *rc::gen::inRange(1, 7); cues > 0; --cues) list.cues.push_back(anyCue());
     list.loops = *rc::gen::arbitrary<bool>();
     const auto count = static_cast<int>(list.cues.size());
@@ -654,9 +725,10 @@ CueList anyLists() {
 
 Input anyInput(Time after) {
     using Kind = Input::Kind;
-    constexpr Kind kKinds[] = {Kind::Go,       Kind::Go,    Kind::Go,      Kind::Go,      Kind::Back,  Kind::Jump,
-                               Kind::Blackout, Kind::Dark,  Kind::Light,   Kind::Lock,    Kind::Load,  Kind::Pause,
-                               Kind::Freeze,   Kind::Panic, Kind::Restore, Kind::Restore, Kind::Master};
+    constexpr Kind kKinds[] = {Kind::Go,       Kind::Go,    Kind::Go,      Kind::Go,      Kind::Back,   Kind::Jump,
+                               Kind::Blackout, Kind::Dark,  Kind::Light,   Kind::Lock,    Kind::Load,   Kind::Pause,
+                               Kind::Freeze,   Kind::Panic, Kind::Restore, Kind::Restore, Kind::Master, Kind::Highlight,
+                               Kind::Solo,     Kind::Level, Kind::Park};
     constexpr Input::Source kSources[] = {Input::Source::Controller, Input::Source::Terminal};
     Input input;
     // One that comes a little too late takes effect when it comes.
@@ -667,6 +739,7 @@ Input anyInput(Time after) {
     input.ago = *rc::gen::element(0, 0, 0, -1, 500, 1700, 2500, 20000) * 1ms;
     input.list = *rc::gen::element(0, 0, 0, 1, 2, 3, -1);
     input.level = static_cast<float>(*rc::gen::inRange(-1, 6)) / 4;
+    input.fixture = *rc::gen::inRange(-2, static_cast<int>(kLevels) + 1);
     return input;
 }
 
@@ -684,24 +757,17 @@ void compare(const Playback& playback, const Model& model, const CueList& list, 
     RC_ASSERT(state.cue == model.cueAt(time, 0));
     const std::size_t lists = 1 + list.sides.size();
     for (std::size_t side = 1; side < lists; ++side) RC_ASSERT(state.sides[side - 1].cue == model.cueAt(time, side));
-    // The highest of all lists.
-    const auto highest = [&](float dark, const auto& move) {
-        float most = 0;
-        for (std::size_t i = 0; i < lists; ++i) most = std::max(most, model.valueAt(time, i, dark, move).value);
-        return most;
-    };
     RC_ASSERT(state.blackout == model.isDark(time));
     RC_ASSERT(state.panic == model.isPanic(time));
     RC_ASSERT(state.frozen == model.isFrozen(time));
     if (time >= model.newest()) RC_ASSERT(state.next == model.next(0));
     if (time >= model.newest())
         for (std::size_t side = 1; side < lists; ++side) RC_ASSERT(state.sides[side - 1].next == model.next(side));
-    const float light = model.lightAt(time);
     for (std::size_t i = 0; i < kLevels; ++i) {
-        const auto move = [&](const CueList::Cue& cue) { return moveOfLevel(cue, i); };
         RC_ASSERT(state.levels[i] >= 0 && state.levels[i] <= 1);
-        RC_ASSERT(isNear(state.levels[i], light * highest(list.dark.levels[i], move)));
+        RC_ASSERT(isNear(state.levels[i], model.levelAt(time, i)));
     }
+    const float light = model.isSolo(time) ? 0 : model.lightAt(time);
     for (std::size_t i = 0; i < kRelays; ++i) {
         const auto move = [&](const CueList::Cue& cue) { return moveOfRelay(cue, i); };
         const float dark = list.dark.relays[i];
@@ -713,7 +779,7 @@ void compare(const Playback& playback, const Model& model, const CueList& list, 
     for (std::size_t output = 0; output < kOutputs; ++output)
         for (std::uint32_t source = 0; source < kSources; ++source) {
             const auto move = [&](const CueList::Cue& cue) { return moveOfLayer(cue, output, {source}); };
-            RC_ASSERT(isNear(opacityOf(state, output, {source}), light * highest(0, move)));
+            RC_ASSERT(isNear(opacityOf(state, output, {source}), light * model.highestAt(time, 0, move)));
             for (const LayerState& layer : state.outputs[output].layers) {
                 if (layer.source.value != source) continue;
                 const auto played = model.playedAt(time, output, source);
