@@ -95,7 +95,7 @@ void report(const std::string& name, const std::vector<Time>& times) {
                intervals.size(), milliseconds(period), share(0.5), share(0.99), share(1));
 }
 
-int run(double length, const std::string& deadNode) {
+int run(double length, const std::string& deadNode, int show) {
     SteadyClock clock;
     Listener listener;
     if (!listener.isOpen()) {
@@ -135,7 +135,8 @@ int run(double length, const std::string& deadNode) {
     timer.join();
     for (const auto& [portAddress, times] : listener.times()) {
         const bool ours = portAddress >= kFirst && portAddress < kFirst + kUniverses;
-        report(fmt::format("{} {}", ours ? "ours" : "another sender's", portAddress), times);
+        const char* const whose = ours ? "ours" : portAddress == show ? "the show's" : "another sender's";
+        report(fmt::format("{} {}", whose, portAddress), times);
     }
     report("latency probe", idleTimes);
     return 0;
@@ -150,6 +151,8 @@ int main(int count, char** arguments) {
     app.add_option("--seconds", length, "Length of the measurement")->check(CLI::Range(1.0, 3600.0));
     std::string deadNode;
     app.add_option("--dead-node", deadNode, "An unused address behind the interface 'near', which is sent a universe too");
+    int show = -1;
+    app.add_option("--show", show, "The port-address that a show sends to meanwhile");
     CLI11_PARSE(app, count, arguments);
-    return fantascope::run(length, deadNode);
+    return fantascope::run(length, deadNode, show);
 }

@@ -110,6 +110,7 @@ TEST(FrameTap, gives_the_frame_with_its_top_row_first) {
 TEST_F(TapTest, says_what_was_shown_where_and_when) {
     FrameReader& reader = tap_.addQueue();
     tap_.capture(display_.sink().framebuffer(), 5s);
+    ASSERT_TRUE(display_.sink().finish());  // else the copy may still be on its way
     const Shown shown = *display_.sink().present();
     tap_.publish(shown);
     const ShownFrame* const frame = reader.next(shown.at);

@@ -205,7 +205,7 @@ cues: [{{name: Wet, look: wet, fade: 0, follow: {{after_media: 1}}}}, {{name: Dr
         return check(folder, {{show}, site}).lines;
     };
     EXPECT_THAT(checked("rain.mp4"),
-                HasSubstr("show.yaml:6:64: cues[0].follow.after_media: nothing that is seen in this cue comes "
+                HasSubstr("show.yaml:6:62: cues[0].follow.after_media: nothing that is seen in this cue comes "
                           "to an end; give its video 'times', or its shadow 'play: once'"));
     EXPECT_THAT(checked("{file: rain.mp4, times: 2}"), HasSubstr("ok show.yaml"));
 }

@@ -166,7 +166,7 @@ TEST(KilledNight, goes_on_where_it_died_whatever_is_torn_or_damaged) {
         }
         if (harm != 0) std::ofstream(journal, std::ios::binary) << text;
 
-        RunningProgram again({"rehearse", ".", "--site", ".", "--seconds", "0.2", "--by-hand", "--journal", "night", "--record",
+        RunningProgram again({"rehearse", ".", "--site", ".", "--seconds", "1", "--by-hand", "--journal", "night", "--record",
                               "seen", "--report", "report.json"},
                              folder.path());
         while (again.line()) continue;
@@ -180,6 +180,7 @@ TEST(KilledNight, goes_on_where_it_died_whatever_is_torn_or_damaged) {
         ASSERT_FALSE(resumed.is_null()) << kill << ", harm " << harm << "\n" << text << again.all();
         EXPECT_EQ(resumed["cue"], fmt::format("Step {}", left.cue)) << kill << ", harm " << harm << "\n" << text;
         EXPECT_NEAR(resumed["at"].get<double>(), time, 1e-6) << kill << ", harm " << harm << "\n" << text;
+        ASSERT_TRUE(report.contains("start_to_frame_ms")) << "nothing was shown";
         starts.push_back(report["start_to_frame_ms"].get<double>());
         if (harm != 2) expectRight(folder / "seen", left);  // with a damaged journal fades may be other ones
     }
