@@ -17,23 +17,27 @@ public:
         deviation_ += (std::chrono::abs(took - mean_) - deviation_) / 16;
         mean_ += (took - mean_) / 8;
     }
+    // The same of one that was drawn again: after a GO there may be more to draw than before.
+    void drawnAgain(Time took) { longest_ = std::max(took, longest_ - (longest_ - took) / 8); }
     // Until when a frame for the refresh at `due` waits, so that it can be drawn again. Nothing: it
     // goes at once, since drawing takes too long.
     std::optional<Time> until(Time due, Time period) const {
         // Shares of a period: the frame goes that long before its refresh, or earlier; drawing it
-        // again may take that long, or less.
-        constexpr double kAtLeast = 0.4, kAtMost = 0.5;
+        // again may take that long, or less. The next frame is begun when this one goes, so it has
+        // more than a period.
+        constexpr double kAtLeast = 0.4, kAtMost = 0.65;
         if (again() > fromSeconds(kAtMost * seconds(period))) return std::nullopt;
         return due - std::max(again() + kWakes, fromSeconds(kAtLeast * seconds(period)));
     }
     // How long it may take to draw a frame again. Estimated as a network estimates how long an
-    // answer may take: from the mean and the mean deviation (Jacobson 1988).
-    Time again() const { return mean_ + 4 * deviation_ + kWakes; }
+    // answer may take: from the mean and the mean deviation (Jacobson 1988); or as long as it took
+    // lately.
+    Time again() const { return std::max(mean_ + 4 * deviation_, longest_) + kWakes; }
 
 private:
     static constexpr Time kWakes = std::chrono::milliseconds(1);  // so late a thread may wake
 
-    Time mean_{}, deviation_{};
+    Time mean_{}, deviation_{}, longest_{};
 };
 
 }  // namespace fantascope::app
