@@ -176,6 +176,19 @@ std::vector<CueList::Cue::Ending> endingsOf(const Look& look, const PlayLengths&
     return endings;
 }
 
+// What a cue waits for before another one follows. A cue in which nothing comes to an end goes to
+// `faults`.
+void bindMedia(const Cue& cue, const PlayLengths* lengths, CueList::Cue& bound, ConfigFaults& faults) {
+    if (lengths == nullptr) {
+        bound.follow = *cue.follow + cue.length();
+        return;
+    }
+    bound.endings = endingsOf(bound.look, *lengths);
+    if (bound.endings.empty())
+        faults.add(cue.mediaEnd->error(
+            "nothing that is seen in this cue comes to an end; give its video 'times', or its shadow 'play: once'"));
+}
+
 // The cues of one list. Names that the site does not have go to `faults`.
 std::vector<CueList::Cue> boundCues(const std::vector<Cue>& cues, const Show& show, const Site& site, const PlayLengths* lengths,
                                     ConfigFaults& faults) {
@@ -196,10 +209,7 @@ std::vector<CueList::Cue> boundCues(const std::vector<Cue>& cues, const Show& sh
         next.fade = cue.fade;
         next.follow = cue.follow;
         next.endings.clear();
-        if (cue.mediaEnd && lengths != nullptr) next.endings = endingsOf(next.look, *lengths);
-        if (cue.mediaEnd && lengths != nullptr && next.endings.empty())
-            faults.add(cue.mediaEnd->error(
-                "nothing that is seen in this cue comes to an end; give its video 'times', or its shadow 'play: once'"));
+        if (cue.mediaEnd) bindMedia(cue, lengths, next, faults);
         next.followers = cue.followers;
         next.times = cue.times;
         next.name = cue.name;

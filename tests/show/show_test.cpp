@@ -663,6 +663,7 @@ TEST(TrackedShow, says_how_its_sources_play) {
     EXPECT_EQ(list.cues[4].speedOf(dim), 1) << "it blocks";
     const CueList shorter = loaded.show->bind(testSite()).value();
     EXPECT_NE(hashOf(list), hashOf(shorter)) << "a journal must not be taken for exact";
+    EXPECT_EQ(shorter.cues[1].usualFollow(), 3s) << "lengths that nobody knows are none";
     EXPECT_THAT(loaded.show->bind(testSite(), &lengths)->cues[1].endings,
                 ElementsAre(testing::Field(&CueList::Cue::Ending::length, 7s)));
     const PlayLengths none;

@@ -118,8 +118,32 @@ void noteNegatives(const show::Source& source, std::vector<std::string>& odditie
     }
 }
 
+namespace {
+
+// What a look asks of how a source plays, and the source does not do.
+void noteStills(const show::Show& show, std::vector<std::string>& oddities) {
+    for (const show::NamedLook& look : show.looks)
+        for (const show::NamedLook::Play& play : look.plays) {
+            const show::Source& source = *std::ranges::find(show.sources, play.source, &show::Source::id);
+            const auto& kind = source.picture;
+            const bool isStill = std::holds_alternative<show::SolidSource>(kind) ||
+                                 std::holds_alternative<show::ImageSource>(kind) ||
+                                 std::holds_alternative<show::CameraSource>(kind);
+            const bool begins =
+                std::holds_alternative<show::VideoSource>(kind) || std::holds_alternative<show::ShadowSource>(kind);
+            const std::string where = fmt::format("{}: the look '{}'", show.file.string(), look.name);
+            if (play.speed && isStill)
+                oddities.push_back(fmt::format("{} gives '{}' a speed, but it does not move", where, source.name));
+            if (play.restarts && !begins)
+                oddities.push_back(fmt::format("{} lets '{}' begin again, but only videos and shadows do", where, source.name));
+        }
+}
+
+}  // namespace
+
 void noteUnseen(const show::Show& show, std::vector<std::string>& oddities) {
     const std::string file = show.file.string();
+    noteStills(show, oddities);
     const auto has = [](const std::vector<show::Cue>& cues, std::size_t look) {
         return std::ranges::find(cues, look, &show::Cue::look) != cues.end();
     };

@@ -26,7 +26,7 @@ void noteShapes(const show::CueList& cues, const show::BySource<ShapedSource>& s
 // Shapes that were found as light cover the white of the drawing. As leaves, their shadows would
 // show its negative.
 void noteNegatives(const show::Source& source, std::vector<std::string>& oddities);
-// Looks, sources and cues that are never seen.
+// Looks, sources and cues that are never seen, and what a look asks of a source that cannot do it.
 void noteUnseen(const show::Show& show, std::vector<std::string>& oddities);
 // Outputs, fixtures and relays of the site that no look of the show names.
 void noteUnnamed(const show::Show& show, const show::Site& site, std::vector<std::string>& oddities);

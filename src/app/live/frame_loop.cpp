@@ -298,12 +298,12 @@ void FrameLoop::finish(Output& output) {
     spend(output, FramePart::Render, clock_.now() - began);
 }
 
-Time FrameLoop::drawAll(Time showTime) {
+void FrameLoop::drawAll(Time showTime) {
     const Time began = clock_.now();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput_ = std::min(oldestInput_, input.at); });
     for (std::size_t i = 0; i < outputs_.size(); ++i) alone(outputs_[i], [&] { draw(i, showTime); });
     for (Output& output : outputs_) alone(output, [&] { finish(output); });
-    return clock_.now() - began;
+    held_.drawn(clock_.now() - began);
 }
 
 // Waits with a finished frame. Returns whether it is to be drawn again, for an input that came
@@ -418,8 +418,8 @@ void FrameLoop::step() {
     lightShare_ = static_cast<float>(std::clamp(seconds(showClock_.runTime(due)) / seconds(kLightFade), 0.0, 1.0));
     oldestInput_ = Time::max();
     stock_.beginFrame(replica_.playback(), showTime);
-    held_.drawn(drawAll(showTime));
-    if (awaitInput(due)) held_.drawnAgain(drawAll(showTime));
+    drawAll(showTime);
+    if (awaitInput(due)) drawAll(showTime);
     stock_.endFrame();
 
     // The leader waits for its refresh; the others show their frames with it.

@@ -177,7 +177,7 @@ private:
     void inHand(const Output& output);
     void followSettings(Output& output, const show::PictureShift& shift);
     void draw(std::size_t output, Time showTime);
-    Time drawAll(Time showTime);
+    void drawAll(Time showTime);
     bool awaitInput(Time due);
     void finish(Output& output);
     using Presenting = std::function<Result<Shown>(DisplaySink&)>;

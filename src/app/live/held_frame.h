@@ -14,11 +14,13 @@ class HeldFrame {
 public:
     // Notes how long it took to draw a frame.
     void drawn(Time took) {
+        // After a GO there is more to draw than before: two looks instead of one. A frame that took
+        // much longer than that was held up by the machine, and says nothing.
+        constexpr int kMore = 3, kForgets = 1024;
+        longest_ = std::max(std::min(took, kMore * mean_), longest_ - longest_ / kForgets);
         deviation_ += (std::chrono::abs(took - mean_) - deviation_) / 16;
         mean_ += (took - mean_) / 8;
     }
-    // The same of one that was drawn again: after a GO there may be more to draw than before.
-    void drawnAgain(Time took) { longest_ = std::max(took, longest_ - (longest_ - took) / 8); }
     // Until when a frame for the refresh at `due` waits, so that it can be drawn again. Nothing: it
     // goes at once, since drawing takes too long.
     std::optional<Time> until(Time due, Time period) const {
@@ -30,8 +32,8 @@ public:
         return due - std::max(again() + kWakes, fromSeconds(kAtLeast * seconds(period)));
     }
     // How long it may take to draw a frame again. Estimated as a network estimates how long an
-    // answer may take: from the mean and the mean deviation (Jacobson 1988); or as long as it took
-    // lately.
+    // answer may take: from the mean and the mean deviation (Jacobson 1988); but as long as it took
+    // lately at least.
     Time again() const { return std::max(mean_ + 4 * deviation_, longest_) + kWakes; }
 
 private:

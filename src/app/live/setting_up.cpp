@@ -85,6 +85,7 @@ void SettingUp::takeOver() {
     }
     adopts_ = false;
     if (changed.empty()) return;
+    settles_ = static_cast<int>(kRate);
     editor_.adopt(adopted_.value());
     if (auto document = ConfigDocument::load(site.file)) document_ = std::move(*document);
     tell(show::event::SiteAdopted{site.file, fmt::format("{}", fmt::join(changed, ", "))});
@@ -93,6 +94,7 @@ void SettingUp::takeOver() {
 void SettingUp::tick(Time moment, const std::function<void(const Key&, Time)>& other) {
     now_ = moment;
     moved_ = false;
+    if (settles_ > 0) --settles_;
     takeOver();
     while (const Press* const press = pressed_.next()) {
         // A terminal does not report the release of a key.

@@ -39,6 +39,10 @@ public:
     static constexpr double kRate = 30;  // Hz
 
     bool on() const { return on_; }
+    // Whether pictures are moved, or were a moment ago: where the camera sees them says nothing
+    // then.
+    // Thread: any.
+    bool moves() const { return on_ || settles_ > 0; }
     // Takes a key of the terminal. Returns whether it has taken the key. While setting up is on it
     // takes all keys, otherwise only the key that begins it.
     bool key(const Key& key);
@@ -92,6 +96,7 @@ private:
     const show::ShowClock showClock_;
     show::EventLog& events_;
     std::atomic<bool> on_ = false;
+    std::atomic<int> settles_ = 0;  // so many ticks after pictures were moved at once
     AppendLog<Press> presses_;
     AppendLog<Press>::Reader pressed_ = presses_.reader();
 

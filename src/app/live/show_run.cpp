@@ -101,7 +101,7 @@ public:
         if (!watched_.empty()) {
             watch_.alsoWatch(driftWatch_.emplace(programme.site, programme.watched, cameraLightOf(programme.site), watched_,
                                                  inputs_, events_, showClock_),
-                             [this] { return settingUp_.on(); });
+                             [this] { return settingUp_.moves(); });
             driftWatch_->fitPatterns(programme.patterns, options.asFastAsPossible,
                                      std::bind_front(&SourceStock::makeReady, &frames_.sources()));
         }

@@ -21,6 +21,7 @@ namespace fantascope::app {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr std::string_view kSite = R"(fantascope: site
 version: 1
@@ -208,6 +209,23 @@ cues: [{{name: Wet, look: wet, fade: 0, follow: {{after_media: 1}}}}, {{name: Dr
                 HasSubstr("show.yaml:6:62: cues[0].follow.after_media: nothing that is seen in this cue comes "
                           "to an end; give its video 'times', or its shadow 'play: once'"));
     EXPECT_THAT(checked("{file: rain.mp4, times: 2}"), HasSubstr("ok show.yaml"));
+}
+
+TEST(Check, notes_a_play_that_changes_nothing) {
+    const ScratchFolder folder;
+    const auto show = folder.file("show.yaml", R"(fantascope: show
+version: 2
+title: Test
+sources: {dim: {solid: [0.1, 0.1, 0.1]}, water: {caustics: {}}}
+looks:
+  glow: {outputs: {left: [{source: dim}, {source: water}]}}
+  slow: {play: {dim: 0.5, water: {speed: 0.5, restart: true}}}
+cues: [{name: Glow, look: glow, fade: 1}, {name: Slow, look: slow, fade: 1}]
+)");
+    const std::string lines = check(folder, {{show}, std::nullopt}).lines;
+    EXPECT_THAT(lines, HasSubstr("note: show.yaml: the look 'slow' gives 'dim' a speed, but it does not move\n"));
+    EXPECT_THAT(lines, HasSubstr("the look 'slow' lets 'water' begin again, but only videos and shadows do\n"));
+    EXPECT_THAT(lines, Not(HasSubstr("gives 'water'")));
 }
 
 // Example failure: the show loads, and the projector stays dark since the video was copied by

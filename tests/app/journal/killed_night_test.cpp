@@ -125,7 +125,7 @@ void expectRight(const std::filesystem::path& recording, const Written& left) {
     EXPECT_FALSE(video.frames.empty());
     std::getline(relays, line);
     while (std::getline(relays, line)) {
-        const double time = std::stod(line);
+        const double time = std::stod(line) + 1e-6;  // it is rounded
         const bool isLit = line.back() == '1';
         // A relay is written some ticks after the moment whose state it is given.
         EXPECT_TRUE(isLit || !left.streetAt(time) || !left.streetAt(time - 0.1))

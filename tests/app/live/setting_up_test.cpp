@@ -187,6 +187,9 @@ TEST_F(SettingUpPart, takes_over_what_somebody_else_has_saved) {
     EXPECT_THAT(told(), HasSubstr("was saved: left is set up as it says"));
     EXPECT_GT(before, 100);
     EXPECT_LT(at(0, {170, 100}), 10) << "the corner has moved in";
+    EXPECT_TRUE(setting_->moves()) << "the camera must not correct it";
+    for (int i = 0; i < SettingUp::kRate; ++i) work();
+    EXPECT_FALSE(setting_->moves());
     press({.letter = 'e'});
     press({Name::Right});
     saved("[150.00, 48.35]");

@@ -52,6 +52,12 @@ TEST(ProgramWithASavedShow, takes_it_over_or_says_where_it_is_wrong) {
     save("cues:\n", "cues:\n  - {name: Before, look: red, fade: 0}\n");
     EXPECT_THAT(says("was saved"), HasSubstr("show.yaml was saved: the show goes on with it"));
     EXPECT_EQ(program.all().find("cue 2 of 2"), std::string::npos) << "no cue was entered";
+    std::string site = kWorkshopSite;
+    site.replace(site.find("size:"), 5, "corners: [[4, 2], [64, 0], [64, 36], [0, 36]], size:");
+    folder.file("site.yaml", site);
+    EXPECT_THAT(says("was saved"), HasSubstr("site.yaml was saved: wall is set up as it says"));
+    folder.file("site.yaml", site.replace(site.find("rate: 10"), 8, "rate: 2000"));
+    EXPECT_THAT(says("was saved"), HasSubstr("site.yaml was saved, but the show goes on as it was: ./site.yaml:"));
     EXPECT_EQ(program.stop(), 0);
 }
 
