@@ -193,8 +193,10 @@ void NightJournal::writeOn(const std::stop_token& stop) {
         if (time) writeTime(*time);
         lock.lock();
         held_ = file_->unwritten();
+        // While the disk is waited for, a press may have to wait, too: only if there is something
+        // new.
+        isDirty_ = isDirty_ || file_->written() != bytes_;
         bytes_ = file_->written();
-        isDirty_ = true;
         trouble_ = result ? "" : result.error().message() + "; make room, and the lines follow";
         if (result) written_ = asked;
         done_.notify_all();
@@ -206,7 +208,7 @@ void NightJournal::writeOn(const std::stop_token& stop) {
 void NightJournal::syncOn(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {
-        wake_.wait_for(lock, stop, kSyncEvery, [] { return false; });
+        pause_.wait_for(lock, stop, kSyncEvery, [] { return false; });
         if (!std::exchange(isDirty_, false)) continue;
         lock.unlock();
         const Result<void> result = file_->sync();

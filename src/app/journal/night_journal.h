@@ -82,8 +82,10 @@ private:
     drivers::FileHandle clockFile_;
     bool secondSlot_ = false;
 
-    mutable std::mutex mutex_;  // of:
-    std::condition_variable_any wake_, done_;
+    mutable std::mutex mutex_;           // of:
+    std::condition_variable_any wake_;   // of the writer alone: who waited for it, too, would take its wakes
+    std::condition_variable_any pause_;  // of the syncer
+    std::condition_variable_any done_;
     std::string pending_;
     std::size_t held_ = 0;  // bytes that the file could not take yet
     std::optional<Time> time_;

@@ -303,7 +303,7 @@ void FrameLoop::drawAll(Time showTime) {
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput_ = std::min(oldestInput_, input.at); });
     for (std::size_t i = 0; i < outputs_.size(); ++i) alone(outputs_[i], [&] { draw(i, showTime); });
     for (Output& output : outputs_) alone(output, [&] { finish(output); });
-    held_.drawn(clock_.now() - began);
+    if (began >= warmUntil_) held_.drawn(clock_.now() - began);
 }
 
 // Waits with a finished frame. Returns whether it is to be drawn again, for an input that came
@@ -330,7 +330,7 @@ Time FrameLoop::refreshFrom(Time moment) {
 void FrameLoop::begin(const show::ShowClock& showClock) {
     showClock_ = showClock;
     hangsFrom_ = (showClock.runStart() + kHangs).count();
-    aheadUntil_ = showClock.runStart() + kWarmUp;
+    aheadUntil_ = warmUntil_ = showClock.runStart() + kWarmUp;
     for (Output& output : outputs_) output.shown = Shown{.at = showClock.runStart()};  // every later refresh needs a frame
 }
 

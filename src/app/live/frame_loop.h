@@ -198,6 +198,7 @@ private:
     HeldFrame held_;
     Time lateAt_ = -kAhead;  // when a frame was late last
     Time aheadUntil_{};      // until then no frame waits for inputs
+    Time warmUntil_{};       // what frames took before says nothing of later ones
     float lightShare_ = 0;   // how far the light correction is faded in with it
     show::PlaybackReplica replica_;
     show::ShowState state_;
