@@ -83,7 +83,7 @@ private:
     bool secondSlot_ = false;
 
     mutable std::mutex mutex_;           // of:
-    std::condition_variable_any wake_;   // of the writer alone: who waited for it, too, would take its wakes
+    std::condition_variable_any wake_;   // of the writer alone: another thread that waited here would take its wakes
     std::condition_variable_any pause_;  // of the syncer
     std::condition_variable_any done_;
     std::string pending_;

@@ -142,10 +142,11 @@ struct Teller {
         return fmt::format("{} was saved, but the show goes on as it was: {}", refused.files, refused.why);
     }
     std::string operator()(const event::SiteChanged& changed) const {
-        return fmt::format("{} was saved: {} counts when the show begins anew", changed.file.string(), changed.later);
+        return fmt::format("{} was saved: what it says of {} counts when the show begins anew", changed.file.string(),
+                           changed.later);
     }
     std::string operator()(const event::SiteAdopted& adopted) const {
-        return fmt::format("{} was saved: {} is set up as it says", adopted.file.string(), adopted.outputs);
+        return fmt::format("{} was saved: now set up as it says: {}", adopted.file.string(), adopted.outputs);
     }
     std::string operator()(const event::SettingUpBegan&) const {
         return "setting up the outputs: the picture lists the keys, e ends it";

@@ -167,7 +167,7 @@ struct RevisionRefused {
     std::string files;
     std::string why;  // may have several lines
 };
-// The site file was saved; what of it counts only when the show begins anew.
+// The site file was saved, and a part of it counts only when the show begins anew.
 struct SiteChanged {
     std::filesystem::path file;
     std::string later;  // keys

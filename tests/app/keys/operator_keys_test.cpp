@@ -34,8 +34,15 @@ protected:
         while (const show::LoggedInput* const logged = reader.next()) inputs.push_back(logged->input);
         return inputs;
     }
+    // The input that a key at a window gives, a tenth of a second after the one before.
+    show::Input inputAfter(char letter, OperatorKeys& keys) {
+        keys.pressedAtScreen({.letter = letter}, moment_ += 100ms);
+        keys.tick(moment_);
+        return inputs().back();
+    }
 
     RunningShow run_;
+    Time moment_ = 12s;
     bool settingUp_ = false;
     int pictures_ = 0, ends_ = 0;
 };
@@ -118,12 +125,7 @@ TEST_F(Keys, go_to_the_list_that_was_chosen) {
 
 TEST_F(Keys, highlight_one_lamp_after_the_other) {
     const auto keys = keysWith({0, false, {}});
-    Time moment = 12s;
-    const auto pressed = [&](char letter) {
-        keys->pressedAtScreen({.letter = letter}, moment += 100ms);
-        keys->tick(moment);
-        return inputs().back();
-    };
+    const auto pressed = [&](char letter) { return inputAfter(letter, *keys); };
     const int count = static_cast<int>(run_.site.fixtures.size());
     ASSERT_GT(count, 0);
     for (int fixture = 0; fixture < count; ++fixture) EXPECT_EQ(pressed('h').fixture, fixture);
@@ -135,12 +137,7 @@ TEST_F(Keys, highlight_one_lamp_after_the_other) {
 // Example failure: the level is that of the master, or of the lamp before.
 TEST_F(Keys, dim_and_park_the_highlighted_lamp) {
     const auto keys = keysWith({0, false, {}});
-    Time moment = 12s;
-    const auto pressed = [&](char letter) {
-        keys->pressedAtScreen({.letter = letter}, moment += 100ms);
-        keys->tick(moment);
-        return inputs().back();
-    };
+    const auto pressed = [&](char letter) { return inputAfter(letter, *keys); };
     pressed('k');
     EXPECT_EQ(inputs().back().fixture, -1) << "no lamp is highlighted";
     pressed('h');

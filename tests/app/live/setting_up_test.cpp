@@ -184,7 +184,7 @@ TEST_F(SettingUpPart, takes_over_what_somebody_else_has_saved) {
     };
     const int before = at(0, {170, 100});
     saved("[240.00, 48.35]");
-    EXPECT_THAT(told(), HasSubstr("was saved: left is set up as it says"));
+    EXPECT_THAT(told(), HasSubstr("was saved: now set up as it says: left"));
     EXPECT_GT(before, 100);
     EXPECT_LT(at(0, {170, 100}), 10) << "the corner has moved in";
     EXPECT_TRUE(setting_->moves()) << "the camera must not correct it";

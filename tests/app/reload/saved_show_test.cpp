@@ -55,7 +55,7 @@ TEST(ProgramWithASavedShow, takes_it_over_or_says_where_it_is_wrong) {
     std::string site = kWorkshopSite;
     site.replace(site.find("size:"), 5, "corners: [[4, 2], [64, 0], [64, 36], [0, 36]], size:");
     folder.file("site.yaml", site);
-    EXPECT_THAT(says("was saved"), HasSubstr("site.yaml was saved: wall is set up as it says"));
+    EXPECT_THAT(says("was saved"), HasSubstr("site.yaml was saved: now set up as it says: wall"));
     folder.file("site.yaml", site.replace(site.find("rate: 10"), 8, "rate: 2000"));
     EXPECT_THAT(says("was saved"), HasSubstr("site.yaml was saved, but the show goes on as it was: ./site.yaml:"));
     EXPECT_EQ(program.stop(), 0);

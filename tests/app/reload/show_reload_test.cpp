@@ -269,16 +269,17 @@ TEST_F(SavedShow, takes_the_projections_of_a_site_and_tells_what_counts_later) {
     EXPECT_EQ(adopted_[0].warp.shape().corners[0], glm::dvec2(1, 0));
     folder_.file("site.yaml", std::string(kSite) + "universes: [{number: 1, port: {driver: simulated}}]\n");
     pass(1s);
-    EXPECT_THAT(told(), ElementsAre("site.yaml was saved: universes counts when the show begins anew"));
+    EXPECT_THAT(told(), ElementsAre("site.yaml was saved: what it says of universes counts when the show begins anew"));
     EXPECT_EQ(adopted_[0].warp.shape().corners[0], glm::dvec2(0, 0));
     adopted_.clear();
     folder_.file("site.yaml", replaced(moved, "size: [32, 18]", "size: [64, 36]"));
     pass(1s);
-    EXPECT_THAT(told(), ElementsAre("site.yaml was saved: outputs counts when the show begins anew"));
+    EXPECT_THAT(told(), ElementsAre("site.yaml was saved: what it says of outputs counts when the show begins anew"));
     EXPECT_THAT(adopted_, IsEmpty()) << "corners are pixels";
     folder_.file("site.yaml", replaced(kSite, "refresh_rate: 20", "refresh_rate: 25"));
     pass(1s);
-    EXPECT_THAT(told(), ElementsAre("site.yaml was saved: outputs[0].refresh_rate counts when the show begins anew"));
+    EXPECT_THAT(told(),
+                ElementsAre("site.yaml was saved: what it says of outputs[0].refresh_rate counts when the show begins anew"));
     folder_.file("site.yaml", "fantascope: site\nversion: 1\noutput: 3\n");
     pass(1s);
     const auto refused = told();
