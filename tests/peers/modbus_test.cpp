@@ -49,8 +49,9 @@ bool comesTrue(Clock& clock, const std::function<bool()>& condition) {
 
 bool runs(const Device& device) { return device.status().state == DeviceState::Running; }
 
-// A busy machine may take more than .2 s to deliver what was written to a pseudo-terminal.
-const std::string kPatient = "response_timeout: 0.33\n";
+// A machine busy with other tests may take .4 s to deliver what was written to a pseudo-terminal.
+const std::string kPatient = "response_timeout: 1\n";
+const std::string kPatientRelays = kPatient + "timeout: 3\n";
 
 // How a rig's line is lost.
 enum class Loss { LineIsCut, UnitIsSilent };
@@ -112,8 +113,8 @@ private:
 
 class RelaysOnPeer final : public PeerRig<contract::RelayBankRig> {
 public:
-    RelaysOnPeer(ModbusPeer& peer, Loss loss) : PeerRig(peer, loss, "watchdog: {register: 100, period: 0.05}\n" + kPatient) {
-        peer_.ask("watchdog 0 400 4 101");
+    RelaysOnPeer(ModbusPeer& peer, Loss loss) : PeerRig(peer, loss, "watchdog: {register: 100, period: 0.05}\n" + kPatientRelays) {
+        peer_.ask("watchdog 0 1500 4 101");
         reopen();
         letTimePass();
     }
@@ -325,7 +326,7 @@ TEST_P(OnModbus, a_silent_unit_is_named) {
 TEST_P(OnModbus, a_dead_unit_leaves_the_line_to_the_others) {
     peer_->ask("dead 0.2");
     const auto dead = contacts(kPatient + "unit: 2\nrate: 50\n");
-    const auto bank = relays(kPatient + "timeout: 3\n");
+    const auto bank = relays(kPatientRelays);
     const auto living = contacts(kPatient + "first: 8\nrate: 50\n");
     ASSERT_TRUE(comesTrue([&] { return runs(*bank) && runs(*living); })) << bank->status().detail << living->status().detail;
     for (int time = 0; time < 40; ++time) {
