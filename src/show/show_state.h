@@ -74,6 +74,19 @@ struct ListPlace {
     friend bool operator==(const ListPlace&, const ListPlace&) = default;
 };
 
+// A lamp, an index into Site::fixtures, that a person lets shine at least so bright.
+struct RaisedLamp {
+    int fixture = -1;
+    float level = 0;
+    friend bool operator==(const RaisedLamp&, const RaisedLamp&) = default;
+};
+// A relay, an index into Site::relays, that a person has switched, and no cue since.
+struct SwitchedRelay {
+    int relay = -1;
+    bool on = false;
+    friend bool operator==(const SwitchedRelay&, const SwitchedRelay&) = default;
+};
+
 // Where the cues are, and what the operator does to them.
 struct Controls {
     int cue = -1;               // index into Show::cues of the current cue; -1 before the first
@@ -87,9 +100,11 @@ struct Controls {
     bool locked = false;        // nothing but darkness is taken from hand controller, contacts and windows
     int highlight = -1;         // index into Site::fixtures of the one that is shown at `highlightLevel`; -1: none
     float highlightLevel = 1;
-    bool solo = false;               // nothing is shown but that one
-    std::vector<int> parked{};       // indices into Site::fixtures of those that stay as they are; ascending
-    std::vector<ListPlace> sides{};  // of each list that plays beside the main one
+    bool solo = false;                      // nothing is shown but that one
+    std::vector<int> parked{};              // indices into Site::fixtures of those that stay as they are; ascending
+    std::vector<RaisedLamp> raised{};       // ascending
+    std::vector<SwitchedRelay> switched{};  // ascending
+    std::vector<ListPlace> sides{};         // of each list that plays beside the main one
     friend bool operator==(const Controls&, const Controls&) = default;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace fantascope::app {
 
@@ -86,7 +87,16 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         case Action::LampDimmer:
         case Action::LampBrighter:
         case Action::Park:
+        case Action::Raise:
             return light(input, *action);
+        case Action::NextRelay:
+            return chooseRelay(input.at);
+        case Action::SwitchRelay:
+            return switchRelay(input);
+        case Action::Release:
+            input.kind = Kind::Release;
+            inputs_.submit(input);
+            return;
         case Action::Corrections:
         case Action::Lock:
             input.kind = *action == Action::Lock ? Kind::Lock : Kind::Corrections;
@@ -141,10 +151,29 @@ void OperatorKeys::light(show::Input input, RunKey::Action action) {
     input.kind = action == Action::Highlight ? Kind::Highlight
                  : action == Action::Solo    ? Kind::Solo
                  : action == Action::Park    ? Kind::Park
+                 : action == Action::Raise   ? Kind::Raise
                                              : Kind::Level;
     input.fixture = state_.highlight;
     if (action == Action::Highlight) input.fixture = state_.highlight + 1 < count ? state_.highlight + 1 : -1;
+    if (input.kind == Kind::Raise) input.level = state_.highlightLevel;
     if (input.kind == Kind::Level) input.level = stepped(state_.highlightLevel, action == Action::LampBrighter ? 1 : -1);
+    inputs_.submit(input);
+}
+
+void OperatorKeys::chooseRelay(Time at) {
+    const std::vector<std::string>& relays = actions_.relays;
+    if (!relays.empty()) relay_ = (relay_ + 1) % static_cast<int>(relays.size());
+    const std::string name = relays.empty() ? "" : relays[static_cast<std::size_t>(relay_)];
+    events_.append({at, show::event::RelayChosen{name, std::string(keyFor(RunKey::Action::SwitchRelay))}});
+}
+
+// Switches the chosen relay the other way than it is.
+void OperatorKeys::switchRelay(show::Input input) {
+    if (relay_ < 0) return chooseRelay(input.at);
+    replica_.stateAt(input.at, state_);
+    input.kind = Kind::Switch;
+    input.relay = relay_;
+    input.on = state_.relays[static_cast<std::size_t>(relay_)] == 0;
     inputs_.submit(input);
 }
 

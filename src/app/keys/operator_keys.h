@@ -19,6 +19,8 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace fantascope::app {
 
@@ -35,6 +37,7 @@ public:
         std::function<void()> end;
         std::function<std::string()> nextDay;  // what the show's schedule brings, in lines; empty: there is none
         std::function<std::string(const show::ShowState&)> howItIs;  // in lines
+        std::vector<std::string> relays{};                           // their names, in the site's order
     };
     // The logs outlive this. `terminal`: null if nobody can press a key there.
     OperatorKeys(show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock,
@@ -63,6 +66,8 @@ private:
     void tellAll(Time at);
     void dim(show::Input input, int step);
     void light(show::Input input, RunKey::Action action);
+    void chooseRelay(Time at);
+    void switchRelay(show::Input input);
 
     show::InputLog& inputs_;
     show::PlaybackReplica replica_;
@@ -77,6 +82,7 @@ private:
     GoSchedule schedule_;
     std::atomic<Time> nextGo_ = Time::max();
     std::atomic<int> list_ = 0;
+    int relay_ = -1;  // that the key switches; -1: none yet
     QuitKey quitKey_;
     const Actions actions_;
 };

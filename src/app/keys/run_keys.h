@@ -33,6 +33,10 @@ struct RunKey {
         LampDimmer,
         LampBrighter,
         Park,
+        Raise,
+        NextRelay,
+        SwitchRelay,
+        Release,
         Pictures,
         SetUp,
         Corrections,
@@ -47,7 +51,7 @@ struct RunKey {
 };
 
 // All keys. README.md has the same table.
-constexpr std::array<RunKey, 23> kRunKeys = {
+constexpr std::array<RunKey, 27> kRunKeys = {
     {{letterKey(' '), "space", "GO: the loaded cue, or the next one; after a pause: go on", RunKey::Action::Go},
      {letterKey('b'), "b", "back: the cue before", RunKey::Action::Back},
      {{Key::Name::Up}, "up", "load the cue before the one that GO would enter", RunKey::Action::LoadPrevious},
@@ -65,6 +69,10 @@ constexpr std::array<RunKey, 23> kRunKeys = {
      {letterKey(','), ",", "the highlighted lamp: 10 % darker", RunKey::Action::LampDimmer},
      {letterKey('.'), ".", "the highlighted lamp: 10 % brighter", RunKey::Action::LampBrighter},
      {letterKey('k'), "k", "park: keep that lamp as it is, whatever the cues do; again: let it go", RunKey::Action::Park},
+     {letterKey('a'), "a", "that lamp by hand: at least so bright as it is highlighted; at 0 no more", RunKey::Action::Raise},
+     {letterKey('w'), "w", "the next relay, for x", RunKey::Action::NextRelay},
+     {letterKey('x'), "x", "switch that relay by hand, until a cue switches it", RunKey::Action::SwitchRelay},
+     {letterKey('z'), "z", "take back all that was done by hand with a and x", RunKey::Action::Release},
      {letterKey('s'), "s", "take a picture of every output", RunKey::Action::Pictures},
      {letterKey('e'), "e", "set the outputs up; again: done", RunKey::Action::SetUp},
      {letterKey('c'), "c", "take the camera's corrections back; again: allow them", RunKey::Action::Corrections},

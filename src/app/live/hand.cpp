@@ -72,7 +72,7 @@ void Hand::tell(Time showTime) {
         if (const auto on = show::kHolds[i].on; told_.*on != state_.*on)
             events_.append({showTime, show::event::HoldChanged{static_cast<show::Hold>(i), state_.*on}});
     if (told_.master != state_.master) events_.append({showTime, show::event::MasterChanged{state_.master}});
-    tellLamps(showTime);
+    tellByHand(showTime);
     tellCues(showTime, {told_.cue, told_.loaded}, {state_.cue, state_.loaded}, 0);
     told_.sides.resize(state_.sides.size());
     for (std::size_t side = 0; side < state_.sides.size(); ++side)
@@ -81,8 +81,8 @@ void Hand::tell(Time showTime) {
     toldRevision_ = state_.revision;
 }
 
-// What the operator has done to single lamps.
-void Hand::tellLamps(Time showTime) {
+// What the operator has done to single lamps and relays.
+void Hand::tellByHand(Time showTime) {
     const auto nameOf = [&](int fixture) {
         return fixture < 0 ? std::string() : site_.fixtures[static_cast<std::size_t>(fixture)].name;
     };
@@ -93,6 +93,20 @@ void Hand::tellLamps(Time showTime) {
         const auto isParked = [&](const show::Controls& now) { return std::ranges::binary_search(now.parked, fixture); };
         if (isParked(told_) != isParked(state_))
             events_.append({showTime, show::event::LampParked{nameOf(fixture), isParked(state_)}});
+        const auto levelOf = [&](const show::Controls& now) {
+            const auto raised = std::ranges::find(now.raised, fixture, &show::RaisedLamp::fixture);
+            return raised == now.raised.end() ? 0.0f : raised->level;
+        };
+        if (levelOf(told_) != levelOf(state_))
+            events_.append({showTime, show::event::LampRaised{nameOf(fixture), levelOf(state_)}});
+    }
+    for (int relay = 0; relay < static_cast<int>(site_.relays.size()); ++relay) {
+        const auto isOn = [&](const show::Controls& now) {
+            const auto found = std::ranges::find(now.switched, relay, &show::SwitchedRelay::relay);
+            return found == now.switched.end() ? std::nullopt : std::optional(found->on);
+        };
+        const std::string& name = site_.relays[static_cast<std::size_t>(relay)].name;
+        if (isOn(told_) != isOn(state_)) events_.append({showTime, show::event::RelaySwitched{name, isOn(state_)}});
     }
 }
 

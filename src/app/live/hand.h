@@ -40,7 +40,7 @@ private:
     ButtonLight lightOf(const show::SiteButton& button, Time showTime) const;
     void light(Time showTime);
     void tell(Time showTime);
-    void tellLamps(Time showTime);
+    void tellByHand(Time showTime);
     void tellCues(Time showTime, show::ListPlace told, const show::ListPlace& now, int list);
 
     const show::PlayedShow& show_;

@@ -30,6 +30,7 @@ enum Part {
     Master,
     Highlight,
     Parked,
+    ByHand,
     Locked,
     Cue,
     Fade,
@@ -49,11 +50,11 @@ using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
 constexpr line::Part kShortening[] = {
-    line::Scores, line::Rate,   line::Next,      line::Schedule,  line::Sides,     line::Sides,    line::Next,
-    line::Cue,    line::Cue,    line::Late,      line::Fade,      line::Left,      line::Next,     line::Next,
-    line::Loaded, line::Locked, line::Paused,    line::Frozen,    line::SettingUp, line::Cue,      line::SettingUp,
-    line::Loaded, line::Locked, line::Master,    line::Paused,    line::Frozen,    line::Sides,    line::Unwell,
-    line::Unwell, line::Parked, line::Highlight, line::Highlight, line::Panic,     line::Blackout, line::Cue};
+    line::Scores,    line::Rate,   line::Next,      line::Schedule, line::Sides,     line::Sides,  line::Next,   line::Cue,
+    line::Cue,       line::Late,   line::Fade,      line::Left,     line::Next,      line::Next,   line::Loaded, line::Locked,
+    line::Paused,    line::Frozen, line::SettingUp, line::Cue,      line::SettingUp, line::Loaded, line::Locked, line::Master,
+    line::Paused,    line::Frozen, line::Sides,     line::Unwell,   line::Unwell,    line::ByHand, line::Parked, line::Highlight,
+    line::Highlight, line::Panic,  line::Blackout,  line::Cue};
 
 Forms cueForms(const RunStatus& status) {
     const int cue = status.controls.cue;
@@ -117,6 +118,7 @@ std::array<Forms, line::kParts> partsOf(const RunStatus& status) {
     tell(line::Highlight, !status.highlighted.empty(), (controls.solo ? "SOLO " : "HIGHLIGHT ") + status.highlighted + level,
          controls.solo ? RunKey::Action::Solo : RunKey::Action::Highlight, controls.solo ? "ends" : "goes on from");
     if (!status.parked.empty()) parts[line::Parked] = {"parked: " + status.parked, ""};
+    if (!status.byHand.empty()) parts[line::ByHand] = {"by hand: " + status.byHand, ""};
     if (controls.master < 1) parts[line::Master] = {fmt::format("master {:.0f} %", 100 * controls.master)};
     if (controls.master > 0) parts[line::Master].push_back("");
     if (!status.loadedName.empty())

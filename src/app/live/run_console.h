@@ -39,6 +39,7 @@ struct RunStatus {
     std::vector<Side> sides;                // the lists beside the main one
     std::string highlighted;                // the lamp; empty: none
     std::string parked;                     // lamps that stay as they are: "gate, stairs"
+    std::string byHand;                     // lamps and relays: "gate 40 %, fog on"
     std::string unwell;                     // devices and parts with a fault: "left, dmx"; empty: all is well
     std::string schedule;                   // what it brings next: "23:00 dark"; empty: nothing
     std::optional<Time> left;               // of the run; none: the run has no length

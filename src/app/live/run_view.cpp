@@ -10,6 +10,20 @@
 
 namespace fantascope::app {
 
+namespace {
+
+// What a person holds by hand: "gate 40 %, fog on".
+std::string byHandOf(const show::Controls& controls, const show::Site& site) {
+    std::vector<std::string> parts;
+    for (const auto& [fixture, level] : controls.raised)
+        parts.push_back(fmt::format("{} {:.0f} %", site.fixtures[static_cast<std::size_t>(fixture)].name, 100 * level));
+    for (const auto& [relay, on] : controls.switched)
+        parts.push_back(fmt::format("{} {}", site.relays[static_cast<std::size_t>(relay)].name, on ? "on" : "off"));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace
+
 RunStatus RunView::at(Time moment, Time nextGo, int list) {
     const Time time = showClock_.showTime(moment), runTime = showClock_.runTime(moment);
     replica_.stateAt(time, state_);
@@ -50,6 +64,7 @@ RunStatus RunView::at(Time moment, Time nextGo, int list) {
     };
     if (state_.highlight >= 0) status.highlighted = lampOf(state_.highlight);
     for (const int fixture : state_.parked) status.parked += (status.parked.empty() ? "" : ", ") + lampOf(fixture);
+    status.byHand = byHandOf(state_, show_.at(state_.revision).site);
     status.controls = state_;
     if (hasNews()) status.said = std::exchange(news_, {});
     return status;
@@ -88,6 +103,7 @@ std::string howItIs(const show::ShowState& state, const show::Revision& revision
     }
     for (const int fixture : state.parked)
         add(fmt::format("'{}' is parked", revision.site.fixtures[static_cast<std::size_t>(fixture)].name));
+    if (const std::string byHand = byHandOf(state, revision.site); !byHand.empty()) add("by hand: " + byHand);
     for (const FaultReport& fault : faults) add("not well: " + fault.what);
     return lines.empty() ? "every output shows something, and all is well" : lines;
 }

@@ -314,7 +314,8 @@ private:
                 [this] { screenshots_ ? screenshots_->take() : void(); },
                 [this] { endLights(); },
                 [this] { return caller_.nextDay(); },
-                [this](const show::ShowState& now) { return howItIs(now, played_.at(now.revision), faults_.open()); }};
+                [this](const show::ShowState& now) { return howItIs(now, played_.at(now.revision), faults_.open()); },
+                show::namesOf(programme_.site.relays)};
     }
     // The simulated projectors throw what the displays show, whatever the displays' drivers are.
     Part simulatedSite() {

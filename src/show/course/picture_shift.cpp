@@ -43,7 +43,7 @@ void ShiftCourses::takeBack(Time at, double speed) {
 PictureShift ShiftCourses::at(std::size_t output, Time time) const {
     if (output >= moves_.size()) return {};
     const Move& move = moves_[output].at(time);
-    if (time - move.at >= move.length) return move.to;
+    if (move.length == Time{} || time - move.at >= move.length) return move.to;
     const auto share = static_cast<float>(seconds(time - move.at) / seconds(move.length));
     PictureShift shift;
     for (std::size_t i = 0; i < shift.size(); ++i) shift[i] = glm::mix(move.from[i], move.to[i], share);

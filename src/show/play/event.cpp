@@ -61,6 +61,17 @@ struct Teller {
         return change.parked ? fmt::format("parked: '{}' stays as it is", change.lamp)
                              : fmt::format("'{}' is parked no more", change.lamp);
     }
+    std::string operator()(const event::LampRaised& change) const {
+        return change.level > 0 ? fmt::format("by hand: '{}' at {:.0f} % at least", change.lamp, 100 * change.level)
+                                : fmt::format("'{}' is as the cues have it", change.lamp);
+    }
+    std::string operator()(const event::RelaySwitched& change) const {
+        if (!change.on) return fmt::format("relay '{}' is as the cues have it", change.relay);
+        return fmt::format("by hand: relay '{}' is {} until a cue switches it", change.relay, *change.on ? "on" : "off");
+    }
+    std::string operator()(const event::RelayChosen& chosen) const {
+        return chosen.relay.empty() ? "there is no relay" : fmt::format("{} switches relay '{}'", chosen.key, chosen.relay);
+    }
     std::string operator()(const event::CueLoaded& loaded) const {
         if (loaded.cue < 0) return inList(loaded.list) + "GO enters the next cue";
         return fmt::format("{}GO enters cue {}: {}", inList(loaded.list), placeOf(loaded.number, loaded.cue, loaded.cues),

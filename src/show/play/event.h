@@ -7,6 +7,7 @@
 #include "core/clock.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -46,6 +47,21 @@ struct LampHighlighted {
 struct LampParked {
     std::string lamp;
     bool parked = false;
+};
+// A lamp shines at least so bright by hand, or is left to the cues.
+struct LampRaised {
+    std::string lamp;
+    float level = 0;  // 0: it is left to them
+};
+// A relay is as a person has it, or as the cues have it.
+struct RelaySwitched {
+    std::string relay;
+    std::optional<bool> on;  // nothing: as the cues have it
+};
+// The key that switches a relay is for another one.
+struct RelayChosen {
+    std::string relay;  // empty: none
+    std::string key;
 };
 // GO is to enter another cue than the one after the current.
 struct CueLoaded {
@@ -189,11 +205,11 @@ struct SiteNotSaved {
 };
 
 using What =
-    std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, LampHighlighted, LampParked, CueLoaded, ListChosen,
-                 ShowResumed, ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, StateTold, FaultBegan,
-                 FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved,
-                 MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised, RevisionRefused, SiteChanged,
-                 SiteAdopted, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+    std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, LampHighlighted, LampParked, LampRaised, RelaySwitched,
+                 RelayChosen, CueLoaded, ListChosen, ShowResumed, ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked,
+                 KeysAsked, StateTold, FaultBegan, FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected,
+                 PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised,
+                 RevisionRefused, SiteChanged, SiteAdopted, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -13,12 +13,13 @@
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 22> kKinds = {
-    "go",   "back", "jump",  "blackout", "dark",  "light",   "revise", "correct",   "exchange", "corrections", "trim",
-    "lock", "load", "pause", "freeze",   "panic", "restore", "master", "highlight", "solo",     "level",       "park"};
+constexpr std::array<std::string_view, 25> kKinds = {
+    "go",          "back", "jump",  "blackout", "dark",  "light",  "revise", "correct", "exchange",
+    "corrections", "trim", "lock",  "load",     "pause", "freeze", "panic",  "restore", "master",
+    "highlight",   "solo", "level", "park",     "raise", "switch", "release"};
 constexpr std::array<std::string_view, 9> kSources = {"start",    "controller", "contact", "terminal", "screen",
                                                       "schedule", "camera",     "journal", "file"};
-static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Park) + 1);
+static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Release) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::File) + 1);
 
 constexpr std::string_view kList = "list", kLate = "late";
@@ -26,12 +27,32 @@ constexpr std::string_view kList = "list", kLate = "late";
 // The number that says what an input is about.
 template <class AnyInput>
 auto& subjectOf(AnyInput& input) {
-    if (input.kind == Input::Kind::Highlight || input.kind == Input::Kind::Park) return input.fixture;
-    const bool hasRevision = input.kind == Input::Kind::Revise || input.kind == Input::Kind::Exchange;
+    using Kind = Input::Kind;
+    if (input.kind == Kind::Highlight || input.kind == Kind::Park || input.kind == Kind::Raise) return input.fixture;
+    if (input.kind == Kind::Switch) return input.relay;
+    const bool hasRevision = input.kind == Kind::Revise || input.kind == Kind::Exchange;
     return hasRevision ? input.revision : input.cue;
 }
 
-bool hasLevel(Input::Kind kind) { return kind == Input::Kind::Master || kind == Input::Kind::Level; }
+bool hasLevel(Input::Kind kind) {
+    return kind == Input::Kind::Master || kind == Input::Kind::Level || kind == Input::Kind::Raise;
+}
+
+// How many words come after the usual ones. `more`: those that are there.
+std::size_t moreWordsOf(Input::Kind kind, std::size_t more) {
+    switch (kind) {
+        case Input::Kind::Correct:
+            return 2 * std::tuple_size_v<PictureShift>;
+        case Input::Kind::Trim:
+            return 2;
+        case Input::Kind::Switch:
+            return 1;
+        case Input::Kind::Jump:
+            return std::min<std::size_t>(more, 1);
+        default:
+            return hasLevel(kind) ? 1 : 0;
+    }
+}
 
 std::vector<std::string_view> wordsOf(std::string_view line) {
     std::vector<std::string_view> words;
@@ -104,6 +125,8 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: it has other cue lists; end the show and begin it anew";
         case Outcome::NoSuchFixture:
             return "ignored: there is no such lamp, or none is highlighted";
+        case Outcome::NoSuchRelay:
+            return "ignored: there is no such relay";
     }
     return "unknown";
 }
@@ -118,6 +141,7 @@ std::string lineOf(const Input& input) {
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
     if (input.kind == Input::Kind::Jump && input.ago != Time{}) line += fmt::format(" {}", input.ago.count());
     if (hasLevel(input.kind)) line += fmt::format(" {}", input.level);
+    if (input.kind == Input::Kind::Switch) line += fmt::format(" {:d}", input.on);
     if (input.kind == Input::Kind::Trim) line += fmt::format(" {} {}", input.trim.share, input.trim.relaysOff);
     if (input.list != 0) line += fmt::format(" {} {}", kList, input.list);
     if (input.late) line += fmt::format(" {}", kLate);
@@ -133,15 +157,11 @@ Result<Input> inputOf(std::string_view line) {
         input.list = TRY(numberOf<int>(words.back()));
         words.resize(words.size() - 2);
     }
-    const std::string_view kind = words.size() > 1 ? words[1] : "";
-    const std::size_t wanted = kWords + (kind == "correct"                     ? 2 * input.shift.size()
-                                         : kind == "trim"                      ? 2
-                                         : kind == "master" || kind == "level" ? 1
-                                         : kind == "jump" ? std::min(words.size(), kWords + 1) - std::min(words.size(), kWords)
-                                                          : 0);
-    if (words.size() != wanted) return Error(fmt::format("an input has {} words, here are {}", wanted, words.size()));
-    input.at = Time(TRY(numberOf<Time::rep>(words[0])));
+    if (words.size() < kWords) return Error(fmt::format("an input has at least {} words, here are {}", kWords, words.size()));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
+    const std::size_t wanted = kWords + moreWordsOf(input.kind, words.size() - kWords);
+    if (words.size() != wanted) return Error(fmt::format("'{}' has {} words, here are {}", words[1], wanted, words.size()));
+    input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     subjectOf(input) = TRY(numberOf<int>(words[2]));
     input.source = TRY(choiceOf<Input::Source>(words[3], kSources));
     input.which = TRY(numberOf<int>(words[4]));
@@ -150,6 +170,11 @@ Result<Input> inputOf(std::string_view line) {
             input.shift[i / 2][static_cast<int>(i % 2)] = TRY(numberOf<float>(words[kWords + i]));
     if (input.kind == Input::Kind::Jump && words.size() > kWords) input.ago = Time(TRY(numberOf<Time::rep>(words[kWords])));
     if (hasLevel(input.kind)) input.level = TRY(numberOf<float>(words[kWords]));
+    if (input.kind == Input::Kind::Switch) {
+        const int on = TRY(numberOf<int>(words[kWords]));
+        if (on != 0 && on != 1) return Error(fmt::format("'{}' is neither 0 nor 1", on));
+        input.on = on == 1;
+    }
     if (input.kind == Input::Kind::Trim) {
         input.trim.share = TRY(numberOf<float>(words[kWords]));
         input.trim.relaysOff = TRY(numberOf<int>(words[kWords + 1]));

@@ -37,7 +37,10 @@ struct Input {
         Highlight,    // show fixture `fixture` at full; -1: none
         Solo,         // toggle: show nothing but that fixture, or all again
         Level,        // show the highlighted fixture at `level`
-        Park          // toggle: keep fixture `fixture` as it is seen, or let it go
+        Park,         // toggle: keep fixture `fixture` as it is seen, or let it go
+        Raise,        // let fixture `fixture` shine at `level` at least; 0: as the cues have it
+        Switch,       // switch relay `relay` to `on`, until a cue switches it
+        Release       // take back all that was raised or switched
     };
     // Where the input came from.
     enum class Source {
@@ -59,11 +62,13 @@ struct Input {
     int revision = 0;      // for Revise: a number that InputLog::add() returned; for Exchange: that of the exchange
     PictureShift shift{};  // only for Correct
     LampTrim trim{};       // only for Trim
-    float level = 1;       // for Master and Level, 0..1
+    float level = 1;       // for Master, Level and Raise, 0..1
     Time ago{};            // for Jump: the cue was to be entered so long before; what has followed by now is entered
-    int fixture = -1;      // for Highlight and Park: index into Site::fixtures
+    int fixture = -1;      // for Highlight, Park and Raise: index into Site::fixtures
     int list = 0;          // for Go, Back, Jump and Load: the list; 0: the main one, else that of CueList::sides, from 1
     bool late = false;     // a person asked for it so long before it was taken that it may not be wanted any more
+    int relay = -1;        // for Switch: index into Site::relays
+    bool on = false;       // for Switch
     friend bool operator==(const Input&, const Input&) = default;
 };
 
@@ -88,7 +93,8 @@ enum class Outcome {
     NoSuchLevel,
     NoSuchList,
     OtherLists,
-    NoSuchFixture
+    NoSuchFixture,
+    NoSuchRelay
 };
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
@@ -97,9 +103,10 @@ std::string_view nameOf(Input::Kind kind);
 std::string_view nameOf(Input::Source source);
 
 // One line, without its end: show time in nanoseconds, kind, cue (of Revise and Exchange: the
-// revision; of Highlight and Park: the fixture), source, which, of Correct also the shift, of Trim
-// also the share and how many relays are off, of Master and Level also the level; "list" and its
-// number unless it is the main one; and "late" if it is: "12500000000 jump 3 terminal 0".
+// revision; of Highlight, Park and Raise: the fixture; of Switch: the relay), source, which, of
+// Correct also the shift, of Trim also the share and how many relays are off, of Master, Level and
+// Raise also the level, of Switch also 1 for on; "list" and its number unless it is the main one;
+// and "late" if it is: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads a line that lineOf() wrote. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

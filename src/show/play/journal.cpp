@@ -22,6 +22,7 @@ constexpr std::size_t kCheckDigits = 8;
 // Letters for what is on: those of kHolds, in their order, and of corrections.
 constexpr std::string_view kHoldLetters = "bxpfl";
 constexpr char kCorrects = 'c';
+constexpr char kRaised = 'r', kSwitched = 's';
 static_assert(kHoldLetters.size() == std::size(kHolds));
 
 std::string checkOf(std::string_view text) { return fmt::format("{:08x}", static_cast<std::uint32_t>(fnv1a(text))); }
@@ -70,6 +71,9 @@ struct Writer {
         if (state.corrects) flags += kCorrects;
         if (flags.empty()) flags = '-';
         for (const ListPlace& side : state.controls.sides) flags += fmt::format(":{},{}", side.cue, side.loaded);
+        for (const RaisedLamp& lamp : state.controls.raised) flags += fmt::format(":{}{},{}", kRaised, lamp.fixture, lamp.level);
+        for (const SwitchedRelay& relay : state.controls.switched)
+            flags += fmt::format(":{}{},{:d}", kSwitched, relay.relay, relay.on);
         return fmt::format("state {} {} {} {} {} {}", state.at.count(), state.controls.cue, state.controls.loaded,
                            state.controls.master, flags, printable(state.cue, 1000));
     }
@@ -90,15 +94,21 @@ struct Writer {
     }
 };
 
-// Where a side list is: "3,-1". Nothing: it is no place.
-std::optional<ListPlace> placeFrom(std::string_view text) {
-    std::string words(text);
+// Where a side list is: "3,-1"; a raised lamp: "r2,0.5"; a switched relay: "s1,1". Returns whether
+// it is one of them.
+bool readInto(Controls& controls, std::string_view text) {
+    const char kind = text.starts_with(kRaised) || text.starts_with(kSwitched) ? text.front() : '\0';
+    std::string words(text.substr(kind == '\0' ? 0 : 1));
     std::ranges::replace(words, ',', ' ');
     Words numbers(words);
-    ListPlace place;
-    place.cue = numbers.number<int>();
-    place.loaded = numbers.number<int>();
-    return numbers.isGood() && numbers.rest().empty() ? std::optional(place) : std::nullopt;
+    const int first = numbers.number<int>();
+    if (kind == kRaised)
+        controls.raised.insert(controls.raised.begin(), {first, numbers.number<float>()});
+    else if (const int second = numbers.number<int>(); kind == kSwitched)
+        controls.switched.insert(controls.switched.begin(), {first, second == 1});
+    else
+        controls.sides.insert(controls.sides.begin(), {first, second, {}});
+    return numbers.isGood() && numbers.rest().empty();
 }
 
 // Nothing: it is no line of a journal.
@@ -125,9 +135,7 @@ std::optional<journal::Line> lineFrom(std::string_view text) {
         state.controls.master = words.number<float>();
         std::string_view flags = words.word();
         while (const std::size_t colon = flags.rfind(':') + 1) {
-            const auto place = placeFrom(flags.substr(colon));
-            if (!place) return std::nullopt;
-            state.controls.sides.insert(state.controls.sides.begin(), *place);
+            if (!readInto(state.controls, flags.substr(colon))) return std::nullopt;
             flags.remove_suffix(flags.size() - colon + 1);
         }
         const auto isOn = [&](char letter) { return flags.find(letter) != std::string_view::npos; };

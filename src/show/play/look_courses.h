@@ -32,6 +32,13 @@ public:
     // and from the first at the cue's speed.
     LookCourses moved(const Movement& movement, const CueList::Cue& to) const;
 
+    // A channel of a list that nothing else moves, and a relay that it switches at `since`.
+    void setLevel(std::size_t channel, float level) { levels_[channel] = Course::at(level); }
+    void setRelay(std::size_t relay, bool on, Time since) { relays_[relay] = {on, since}; }
+    // When the list last switched a relay, by the end of its last movement; min(): it has no say in
+    // it.
+    Time switchedAt(std::size_t relay) const { return relays_[relay].since; }
+
     // Room for the layers and pictures of one output, so that lookAt() need not allocate.
     struct Room {
         std::size_t layers = 0, pictures = 0;

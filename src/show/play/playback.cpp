@@ -30,7 +30,7 @@ void dim(Look& look, float light) {
 
 }  // namespace
 
-Playback::Playback(std::shared_ptr<const CueList> list) : gusts_(list->seed) {
+Playback::Playback(std::shared_ptr<const CueList> list) : gusts_(list->seed), hand_(*list) {
     FANTASCOPE_CHECK(list->sides.size() <= kMostSides, "a show has only so many lists");
     lists_.push_back({CuePlayer(list)});
     for (const auto& side : list->sides) lists_.push_back({CuePlayer(side)});
@@ -77,7 +77,10 @@ Outcome Playback::take(const Input& input, Time at, std::shared_ptr<const CueLis
         case Input::Kind::Solo:
         case Input::Kind::Level:
         case Input::Kind::Park:
-            return focus(input, list, at);
+        case Input::Kind::Raise:
+        case Input::Kind::Switch:
+        case Input::Kind::Release:
+            return doByHand(input, list, at);
         case Input::Kind::Revise:
             return revise(std::move(revision), at);
         case Input::Kind::Correct:
@@ -133,7 +136,7 @@ Outcome Playback::moveOn(const Input& input, Time at) {
     if (paused_.last()) letGoOn(at);
     if (wanted == kNoCue && input.list == 0) {  // nothing must keep the light on
         frozen_.set(at, nullptr);
-        letLampsGo(at);
+        hand_.endAll(at);
     }
     played.loaded.set(at, kNoCue);
     takeBackSides(cueTime_.at(at));
@@ -156,7 +159,7 @@ Outcome Playback::hold(Input::Kind kind, Time at) {
         panic_.want(1, at, now.list->blackoutFade);
         if (!paused_.last()) letGoOn(at);
     } else if (kind == Input::Kind::Panic) {
-        letLampsGo(at);
+        hand_.letGo(at);
         panic_.want(0, at, isPanicAt(at) ? Time{} : now.list->panicFade);
         trims_.releaseRelays(at);
         cueTime_.stand(at);
@@ -173,69 +176,11 @@ Outcome Playback::hold(Input::Kind kind, Time at) {
     return Outcome::Taken;
 }
 
-// Shows a lamp, or it alone, for who focuses it; or keeps it as it is.
-Outcome Playback::focus(const Input& input, const CueList& list, Time at) {
+Outcome Playback::doByHand(const Input& input, const CueList& list, Time at) {
     if (isPanicAt(at)) return Outcome::Panicked;
-    if (input.kind == Input::Kind::Solo || input.kind == Input::Kind::Level) {
-        if (highlight_.last() < 0) return Outcome::NoSuchFixture;
-        if (input.kind == Input::Kind::Solo)
-            solo_.set(at, !solo_.last());
-        else if (input.level >= 0 && input.level <= 1)
-            highlightLevel_.set(at, input.level);
-        else
-            return Outcome::NoSuchLevel;
-        return Outcome::Taken;
-    }
-    const bool isPark = input.kind == Input::Kind::Park;
-    const int least = isPark ? 0 : -1;
-    if (input.fixture < least || input.fixture >= static_cast<int>(list.fixtures.size())) return Outcome::NoSuchFixture;
-    if (isPark) return park(input.fixture, at);
-    highlight_.set(at, input.fixture);
-    highlightLevel_.set(at, 1);
-    if (input.fixture < 0) solo_.set(at, false);
-    return Outcome::Taken;
-}
-
-Outcome Playback::park(int fixture, Time at) {
-    std::vector<Parked> parked = parked_.last();
-    if (std::erase_if(parked, [&](const Parked& each) { return each.fixture == fixture; }) == 0) {
-        ShowState now;
-        stateAt(at, now);
-        const auto [first, count] = main().at(cueTime_.at(at)).list->fixtures[static_cast<std::size_t>(fixture)];
-        const auto levels = std::span(now.levels).subspan(first, count);
-        const auto next = std::ranges::upper_bound(parked, fixture, {}, &Parked::fixture);
-        parked.insert(next, {fixture, {levels.begin(), levels.end()}});
-    }
-    parked_.set(at, std::move(parked));
-    return Outcome::Taken;
-}
-
-// Ends what keeps a lamp lit, so that all is dark.
-void Playback::letLampsGo(Time at) {
-    highlight_.set(at, -1);
-    solo_.set(at, false);
-    std::vector<Parked> parked = parked_.last();
-    const auto isLit = [](float level) { return level > 0; };
-    std::erase_if(parked, [&](const Parked& each) { return std::ranges::any_of(each.levels, isLit); });
-    parked_.set(at, std::move(parked));
-}
-
-// Shows the lamps that the operator has put aside, on top of everything else.
-void Playback::showLamps(Time time, const CueList& list, ShowState& out) const {
-    const auto levelsOf = [&](int fixture) {
-        const auto [first, count] = list.fixtures[static_cast<std::size_t>(fixture)];
-        return std::span(out.levels).subspan(first, count);
-    };
-    out.parked.clear();
-    for (const auto& [fixture, levels] : parked_.at(time)) {
-        out.parked.push_back(fixture);
-        std::ranges::copy(levels, levelsOf(fixture).begin());
-    }
-    out.highlight = highlight_.at(time);
-    out.highlightLevel = highlightLevel_.at(time);
-    out.solo = solo_.at(time);
-    if (out.solo) dim(out, 0);
-    if (out.highlight >= 0) std::ranges::fill(levelsOf(out.highlight), out.highlightLevel);
+    ShowState seen;
+    stateAt(at, seen);
+    return hand_.apply(input, at, cueTime_.at(at), list, seen);
 }
 
 // Keeps what is seen, or shows the cues again.
@@ -286,10 +231,7 @@ void Playback::foresee(Time time) {
     frozen_.forget(kept);
     taken_.forget(kept);
     revisions_.forget(kept);
-    solo_.forget(kept);
-    highlight_.forget(kept);
-    highlightLevel_.forget(kept);
-    parked_.forget(kept);
+    hand_.forget(kept);
     shifts_.forget(kept);
     trims_.forget(kept);
 }
@@ -366,14 +308,15 @@ void Playback::stateAt(Time time, ShowState& out) const {
     for (std::size_t side = 0; side < out.sides.size(); ++side) out.sides[side] = placeAt(time, lists_[side + 1]);
     out.cueTime = frozen != nullptr ? frozen->cueTime : cueTime;
     out.moves = frozen == nullptr && !cueTime_.standsAt(time);
-    std::array<const LookCourses*, 1 + kMostSides> seen{};
+    std::array<const LookCourses*, 2 + kMostSides> seen{};  // the last one is the hand's
     LookCourses::Room room;
     for (std::size_t i = 0; i < lists_.size(); ++i) {
         seen[i] = frozen != nullptr ? &frozen->seen[i] : &lists_[i].player.at(cueTime).seen;
         room.layers += lists_[i].player.room().layers;
         room.pictures += lists_[i].player.room().pictures;
     }
-    LookCourses::lookAt(std::span(seen).first(lists_.size()), out.cueTime, room, out);
+    seen[lists_.size()] = &hand_.listAt(time);
+    LookCourses::lookAt(std::span(seen).first(lists_.size() + 1), out.cueTime, room, out);
     out.winds.resize(out.outputs.size());
     const auto& owners = entry.list->windLists;
     for (std::size_t output = 0; output < out.winds.size(); ++output)
@@ -391,8 +334,9 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.frozen = frozen != nullptr;
     out.master = master_.wantedAt(time);
     out.locked = locked_.at(time);
-    if (const float light = blackout_.at(time) * panic_.at(time) * master_.at(time); light < 1) dim(out, light);
-    showLamps(time, *entry.list, out);
+    const float light = hand_.isSoloAt(time) ? 0 : blackout_.at(time) * panic_.at(time) * master_.at(time);
+    if (light < 1) dim(out, light);
+    hand_.show(time, *entry.list, std::span(seen).first(lists_.size()), out);
     out.inputs = taken_.at(time);
     out.revision = revisions_.at(time);
 }

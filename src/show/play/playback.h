@@ -9,6 +9,7 @@
 #include "show/cue_list.h"
 #include "show/pattern_exchange.h"
 #include "show/play/cue_player.h"
+#include "show/play/hand_controls.h"
 #include "show/play/input.h"
 #include "show/show_state.h"
 
@@ -44,10 +45,7 @@ namespace fantascope::show {
 //   everything goes on from where it was.
 // - The master dims pictures and levels, on top of blackout and panic. From full to none it takes
 //   `blackoutFade`.
-// - A highlight shows one fixture at full, or at a level, also in a blackout, and a solo nothing but
-//   that one: for focusing. A panic ends both, and so does the dark before the first cue.
-// - A parked fixture stays as it was seen when it was parked, whatever else happens, but for a
-//   highlight or solo. A panic and the dark before the first cue let those go that are not dark.
+// - What a person does to single lamps and relays, HandControls says.
 // - A late input is ignored, so that a machine that was busy does not fire what was pressed meanwhile
 //   in a burst. Only darkness comes however late it is; a late toggle of the blackout never ends it.
 // - A lock ignores what comes from the hand controller, a contact or a window, but for blackout,
@@ -113,11 +111,6 @@ private:
         std::vector<LookCourses> seen;  // of each list
         Time cueTime{};
     };
-    // A fixture that stays as it is.
-    struct Parked {
-        int fixture = -1;
-        std::vector<float> levels;
-    };
     // A list, and the cue that GO is to enter in it: of the list of its time.
     struct Played {
         CuePlayer player;  // in cue time
@@ -139,10 +132,7 @@ private:
     void bring(Time at, const CuePlayer::Brought& brought);
     void takeBackSides(Time time);
     void freeze(Time at);
-    Outcome focus(const Input& input, const CueList& list, Time at);
-    Outcome park(int fixture, Time at);
-    void letLampsGo(Time at);
-    void showLamps(Time time, const CueList& list, ShowState& out) const;
+    Outcome doByHand(const Input& input, const CueList& list, Time at);
     bool isPanicAt(Time time) const { return panic_.wantedAt(time) < 1; }
     static bool isTooLate(const Input& input);
     bool isLockedOut(const Input& input, Time at) const;
@@ -154,10 +144,8 @@ private:
     CueTime cueTime_;
     Dimmer blackout_, panic_, master_;
     Steps<std::shared_ptr<const Frozen>> frozen_;  // null: nothing is frozen
-    Steps<bool> paused_, locked_, corrects_{true}, solo_;
-    Steps<int> highlight_{-1};
-    Steps<float> highlightLevel_{1};
-    Steps<std::vector<Parked>> parked_;  // by fixture
+    Steps<bool> paused_, locked_, corrects_{true};
+    HandControls hand_;
     ShiftCourses shifts_;
     PatternCourses patterns_;
     TrimCourses trims_;

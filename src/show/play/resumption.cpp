@@ -43,8 +43,10 @@ std::vector<Input> repairs(const ShowState& now, const journal::State& wanted, T
     const std::size_t sides = std::min(goal.sides.size(), now.sides.size());
     bool entersAny = entersCue;
     for (std::size_t side = 0; side < sides; ++side) entersAny = entersAny || now.sides[side].cue != goal.sides[side].cue;
-    // In a panic no cue is entered, nothing is paused and nothing is frozen.
-    const bool lifts = now.panic && (!goal.panic || entersAny || now.frozen != goal.frozen || now.paused != goal.paused);
+    const bool hasHand = now.raised != goal.raised || now.switched != goal.switched;
+    // In a panic no cue is entered, nothing is paused and frozen, and nothing is done by hand.
+    const bool lifts =
+        now.panic && (!goal.panic || entersAny || hasHand || now.frozen != goal.frozen || now.paused != goal.paused);
     if (lifts) add(Kind::Restore);
     if (entersCue) add(Kind::Jump).cue = goal.cue;
     if ((entersCue ? -1 : now.loaded) != goal.loaded) add(Kind::Load).cue = goal.loaded;
@@ -57,6 +59,20 @@ std::vector<Input> repairs(const ShowState& now, const journal::State& wanted, T
         const bool enters = entersCue || now.sides[side].cue != goal.sides[side].cue;  // the main cue may bring others
         if (enters) addTo(Kind::Jump, goal.sides[side].cue);
         if ((enters ? -1 : now.sides[side].loaded) != goal.sides[side].loaded) addTo(Kind::Load, goal.sides[side].loaded);
+    }
+    const bool isByHand = !goal.raised.empty() || !goal.switched.empty();
+    if (hasHand || (entersAny && isByHand)) {
+        add(Kind::Release);
+        for (const RaisedLamp& lamp : goal.raised) {
+            Input& input = add(Kind::Raise);
+            input.fixture = lamp.fixture;
+            input.level = lamp.level;
+        }
+        for (const SwitchedRelay& relay : goal.switched) {
+            Input& input = add(Kind::Switch);
+            input.relay = relay.relay;
+            input.on = relay.on;
+        }
     }
     if (now.blackout != goal.blackout) add(goal.blackout ? Kind::Dark : Kind::Light);
     if (now.frozen != goal.frozen) add(Kind::Freeze);
@@ -95,6 +111,8 @@ std::optional<Resumption> resume(const Journal& journal, Time at, InputLog& inpu
             found == list->cues.end() || wanted.controls.cue < 0 ? -1 : static_cast<int>(found - list->cues.begin());
         wanted.controls.loaded = -1;
         wanted.controls.sides.clear();  // the main cue brings them
+        wanted.controls.raised.clear();
+        wanted.controls.switched.clear();
         repair(wanted, at);
     }
     if (inputs.reader().next() == nullptr) return std::nullopt;

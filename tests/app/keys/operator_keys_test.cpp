@@ -4,6 +4,8 @@
 
 #include "app/running_show.h"
 
+#include "show/names.h"
+
 #include <gmock/gmock.h>
 
 #include <memory>
@@ -26,7 +28,8 @@ protected:
             run_.inputs, run_.events, show::ShowClock(10s, 3h), nullptr, schedule, QuitKey(quitAsks),
             OperatorKeys::Actions{[this](const Key&) { return settingUp_; }, [hasController] { return hasController; },
                                   [this] { ++pictures_; }, [this] { ++ends_; }, [] { return "20:00  Night"; },
-                                  [](const show::ShowState& state) { return state.cue < 0 ? "dark" : "lit"; }});
+                                  [](const show::ShowState& state) { return state.cue < 0 ? "dark" : "lit"; },
+                                  show::namesOf(run_.site.relays)});
     }
     std::vector<show::Input> inputs() const {
         std::vector<show::Input> inputs;
@@ -55,7 +58,7 @@ TEST_F(Keys, at_a_window_ask_for_what_the_hand_controller_does_at_the_moment_of_
     keys->pressedAtScreen({.letter = 'b'}, 12s + 1ms);
     keys->pressedAtScreen({.letter = '0'}, 12s + 2ms);
     keys->pressedAtScreen({.letter = 's'}, 12s + 3ms);
-    keys->pressedAtScreen({.letter = 'z'}, 12s + 3ms);
+    keys->pressedAtScreen({.letter = 'y'}, 12s + 3ms);
     EXPECT_THAT(inputs(), IsEmpty());
     keys->tick(12s + 33ms);
     EXPECT_THAT(inputs(), ElementsAre(show::Input{.at = 3h + 2s, .kind = Kind::Go, .source = Source::Screen},
@@ -102,8 +105,13 @@ TEST_F(Keys, go_to_the_list_that_was_chosen) {
     run_.cues.sides.push_back(std::make_shared<const show::CueList>(side));
     show::InputLog inputs(run_.cues);
     OperatorKeys keys(inputs, run_.events, show::ShowClock(10s, 3h), nullptr, {0, false, {}}, QuitKey(false),
-                      OperatorKeys::Actions{[](const Key&) { return false; }, [] { return false; }, [] {}, [] {},
-                                            [] { return ""; }, [](const show::ShowState&) { return ""; }});
+                      OperatorKeys::Actions{[](const Key&) { return false; },
+                                            [] { return false; },
+                                            [] {},
+                                            [] {},
+                                            [] { return ""; },
+                                            [](const show::ShowState&) { return ""; },
+                                            {}});
     const Key tab{.name = Key::Name::Tab};
     Time moment = 12s;
     const auto press = [&](const Key& key) {
@@ -147,6 +155,30 @@ TEST_F(Keys, dim_and_park_the_highlighted_lamp) {
     EXPECT_FLOAT_EQ(pressed('.').level, 0.9f);
     EXPECT_EQ(pressed('k').kind, Kind::Park);
     EXPECT_EQ(inputs().back().fixture, 0);
+}
+
+// Example failure: x switches a relay that nobody has chosen.
+TEST_F(Keys, raise_the_highlighted_lamp_and_switch_the_chosen_relay) {
+    const auto keys = keysWith({0, false, {}});
+    const auto pressed = [&](char letter) { return inputAfter(letter, *keys); };
+    pressed('h');
+    pressed(',');
+    EXPECT_EQ(pressed('a').kind, Kind::Raise);
+    EXPECT_EQ(inputs().back().fixture, 0);
+    EXPECT_FLOAT_EQ(inputs().back().level, 0.9f);
+    const std::size_t before = inputs().size();
+    pressed('x');
+    const auto& relays = run_.site.relays;
+    ASSERT_EQ(relays.size(), 2u);
+    EXPECT_THAT(inputs(), SizeIs(before)) << "none was chosen";
+    EXPECT_EQ(run_.told().back(), "x switches relay '" + relays[0].name + "'");
+    EXPECT_EQ(pressed('x').kind, Kind::Switch);
+    EXPECT_EQ(inputs().back().relay, 0);
+    EXPECT_EQ(inputs().back().on, !relays[0].safe);
+    EXPECT_EQ(pressed('x').on, relays[0].safe) << "the other way again";
+    pressed('w');
+    EXPECT_EQ(pressed('x').relay, 1);
+    EXPECT_EQ(pressed('z').kind, Kind::Release);
 }
 
 TEST_F(Keys, move_the_master_by_a_tenth) {

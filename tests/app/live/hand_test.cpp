@@ -76,6 +76,12 @@ TEST_F(HandPart, tells_what_the_operator_holds) {
     EXPECT_EQ(told({.kind = Kind::Level, .level = 0.4f}), "solo: nothing is seen but '" + lamp + "', at 40 %");
     EXPECT_EQ(told({.kind = Kind::Park, .fixture = 0}), "parked: '" + lamp + "' stays as it is");
     EXPECT_EQ(told({.kind = Kind::Park, .fixture = 0}), "'" + lamp + "' is parked no more");
+    EXPECT_EQ(told({.kind = Kind::Raise, .level = 0.4f, .fixture = 0}), "by hand: '" + lamp + "' at 40 % at least");
+    EXPECT_EQ(told({.kind = Kind::Raise, .level = 0, .fixture = 0}), "'" + lamp + "' is as the cues have it");
+    const std::string relay = run_.site.relays[0].name;
+    EXPECT_EQ(told({.kind = Kind::Switch, .relay = 0, .on = true}),
+              "by hand: relay '" + relay + "' is on until a cue switches it");
+    EXPECT_EQ(told({.kind = Kind::Release}), "relay '" + relay + "' is as the cues have it");
     EXPECT_EQ(told({.kind = Kind::Highlight}), "no lamp is highlighted any more");
     EXPECT_EQ(told({.kind = Kind::Panic}), "PANIC: pictures and lamps go dark, relays are safe, the cues stand still");
     EXPECT_EQ(told({.kind = Kind::Go}), "ignored: all is dark after a panic; restore comes first");

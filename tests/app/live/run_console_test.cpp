@@ -122,7 +122,9 @@ TEST(StatusLine, says_which_lamp_is_highlighted_or_alone_and_how_to_go_on) {
     EXPECT_THAT(statusLine(status, 40), HasSubstr("SOLO gate"));
     status.controls.highlightLevel = 0.3f;
     status.parked = "stairs, well";
-    EXPECT_THAT(statusLine(status, 200), StartsWith("SOLO gate at 30 %, o ends it  parked: stairs, well"));
+    status.byHand = "bench 40 %, fog on";
+    EXPECT_THAT(statusLine(status, 200),
+                StartsWith("SOLO gate at 30 %, o ends it  parked: stairs, well  by hand: bench 40 %, fog on"));
 }
 
 TEST(StatusLine, names_what_is_not_well_for_as_long_as_it_lasts) {

@@ -83,6 +83,12 @@ TEST(HowItIs, says_what_is_dark_and_why_and_what_is_not_well) {
                   "not well: dmx (sacn) is missing: no route");
     state.outputs[1] = state.outputs[0];
     EXPECT_EQ(howItIs(state, revision, {}), "every output shows something, and all is well");
+    state.raised = {{0, 0.4f}};
+    state.switched = {{1, true}};
+    EXPECT_EQ(howItIs(state, revision, {}),
+              "by hand: " + revision.site.fixtures[0].name + " 40 %, " + revision.site.relays[1].name + " on");
+    state.raised.clear();
+    state.switched.clear();
     state.solo = true;
     EXPECT_EQ(howItIs(state, revision, {}), "everything but one lamp is dark: SOLO");
     state.panic = state.blackout = true;

@@ -12,6 +12,7 @@ using namespace std::chrono_literals;
 using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 using Kind = Input::Kind;
 
@@ -296,6 +297,60 @@ TEST(HeldPlayback, a_parked_lamp_stays_as_it_was_seen) {
     EXPECT_THAT(stateOf(playback, 14s).parked, ElementsAre(0));
     EXPECT_EQ(playback.apply(park(14s, 2)), Outcome::NoSuchFixture);
     EXPECT_EQ(playback.apply(park(14s, -1)), Outcome::NoSuchFixture);
+}
+
+// The highest of cues and hand counts, and nobody is dazzled when a cue is brighter.
+TEST(HeldPlayback, a_raised_lamp_shines_at_least_so_bright) {
+    CueList list = cues();
+    list.fixtures = {{0, 1}, {1, 1}};
+    const auto raise = [](Time at, float level, int fixture) {
+        return Input{.at = at, .kind = Kind::Raise, .level = level, .fixture = fixture};
+    };
+    Playback playback = show::after(list, {raise(1s, 0.5f, 0), raise(1s, 0.25f, 1), {2s, Kind::Go}, {6s, Kind::Dark}});
+    EXPECT_THAT(stateOf(playback, 1500ms).levels, ElementsAre(0.5f, 0.25f)) << "before the first cue, too";
+    EXPECT_THAT(stateOf(playback, 5s).levels, ElementsAre(1, 0.25f));
+    EXPECT_THAT(stateOf(playback, 5s).raised, ElementsAre(RaisedLamp{0, 0.5f}, RaisedLamp{1, 0.25f}));
+    EXPECT_THAT(stateOf(playback, 9s).levels, ElementsAre(0, 0)) << "a blackout makes it dark";
+    EXPECT_EQ(playback.apply(raise(9s, 1.5f, 0)), Outcome::NoSuchLevel);
+    EXPECT_EQ(playback.apply(raise(9s, 1, 2)), Outcome::NoSuchFixture);
+    ASSERT_EQ(playback.apply(raise(9s, 0, 1)), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 9s).raised, ElementsAre(RaisedLamp{0, 0.5f}));
+    ASSERT_EQ(playback.apply({10s, Kind::Panic}), Outcome::Taken);
+    EXPECT_EQ(playback.apply(raise(11s, 1, 0)), Outcome::Panicked);
+    ASSERT_EQ(playback.apply({12s, Kind::Restore}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 12s).raised, SizeIs(1)) << "everything goes on from where it was";
+    ASSERT_EQ(playback.apply({.at = 13s, .kind = Kind::Jump, .cue = -1}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 13s).raised, IsEmpty()) << "at the end of the night nothing keeps the light on";
+}
+
+// Example failures: a cue that does not name the relay switches it back; one that does is ignored
+// for the rest of the night.
+TEST(HeldPlayback, a_relay_stays_as_the_hand_has_it_until_a_cue_switches_it) {
+    CueList list = cues();
+    list.dark.relays = {0, 1};
+    for (CueList::Cue& cue : list.cues) cue.look.relays = {0, 1};
+    list.cues[1].tracksRelays = {1, 1};
+    const auto switched = [](Time at, int relay, bool on) {
+        return Input{.at = at, .kind = Kind::Switch, .relay = relay, .on = on};
+    };
+    Playback playback = show::after(list, {{1s, Kind::Go}, switched(2s, 0, true)});
+    EXPECT_THAT(stateOf(playback, 1999ms).relays, ElementsAre(0, 1));
+    EXPECT_THAT(stateOf(playback, 2s).relays, ElementsAre(1, 1));
+    EXPECT_THAT(stateOf(playback, 2s).switched, ElementsAre(SwitchedRelay{0, true}));
+    ASSERT_EQ(playback.apply({.at = 3s, .kind = Kind::Jump, .cue = 1}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 5s).relays, ElementsAre(1, 1)) << "this cue does not name them";
+    ASSERT_EQ(playback.apply({6s, Kind::Panic}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 7s).relays, ElementsAre(0, 1)) << "safe";
+    ASSERT_EQ(playback.apply({8s, Kind::Restore}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 8s).relays, ElementsAre(1, 1));
+    ASSERT_EQ(playback.apply({.at = 9s, .kind = Kind::Jump, .cue = 0}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 9s).relays, ElementsAre(0, 1));
+    EXPECT_THAT(stateOf(playback, 9s).switched, IsEmpty()) << "a cue has switched it";
+    ASSERT_EQ(playback.apply(switched(10s, 1, false)), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 10s).relays, ElementsAre(0, 0));
+    ASSERT_EQ(playback.apply({11s, Kind::Release}), Outcome::Taken);
+    EXPECT_THAT(stateOf(playback, 11s).relays, ElementsAre(0, 1));
+    EXPECT_EQ(playback.apply(switched(12s, 2, true)), Outcome::NoSuchRelay);
 }
 
 // Example failures: a work light burns through a panic, or all night; a broken lamp comes back.

@@ -137,13 +137,15 @@ Input anyInput(Rng& rng, Time at) {
     const int subject = static_cast<int>(rng.below(9)) - 1;
     const auto number = [&] { return static_cast<float>(rng.uniform(-1, 1)); };
     Input input{.at = at,
-                .kind = static_cast<Kind>(rng.below(static_cast<std::uint32_t>(Kind::Solo) + 1)),
+                .kind = static_cast<Kind>(rng.below(static_cast<std::uint32_t>(Kind::Release) + 1)),
                 .source = static_cast<Input::Source>(rng.below(static_cast<std::uint32_t>(Input::Source::File) + 1)),
                 .which = static_cast<int>(rng.below(300)),
                 .list = static_cast<int>(rng.below(3)) - 1,
                 .late = rng.below(2) == 0};
-    if (input.kind == Kind::Highlight)
+    if (input.kind == Kind::Highlight || input.kind == Kind::Park || input.kind == Kind::Raise)
         input.fixture = subject;
+    else if (input.kind == Kind::Switch)
+        input.relay = subject;
     else if (input.kind == Kind::Revise || input.kind == Kind::Exchange)
         input.revision = subject;
     else
@@ -151,7 +153,8 @@ Input anyInput(Rng& rng, Time at) {
     if (input.kind == Kind::Correct)
         for (glm::vec2& corner : input.shift) corner = {number(), number()};
     if (input.kind == Kind::Trim) input.trim = {number(), subject};
-    if (input.kind == Kind::Master) input.level = number();
+    if (input.kind == Kind::Master || input.kind == Kind::Level || input.kind == Kind::Raise) input.level = number();
+    if (input.kind == Kind::Switch) input.on = rng.below(2) == 0;
     if (input.kind == Kind::Jump && subject > 0) input.ago = std::chrono::seconds(subject);
     return input;
 }
@@ -178,6 +181,8 @@ TEST(Input, that_is_damaged_is_refused_with_what_is_wrong) {
     EXPECT_THAT(refusal("99999999999999999999 go 0 start 0"), HasSubstr("no whole number in range"));
     EXPECT_THAT(refusal("12 og 0 start 0"), HasSubstr("'og' is none of go, back"));
     EXPECT_THAT(refusal("12 go 0 hand 0"), HasSubstr("'hand' is none of start"));
+    EXPECT_THAT(refusal("12 switch 0 terminal 0 2"), HasSubstr("'2' is neither 0 nor 1"));
+    EXPECT_THAT(refusal("12 raise 0 terminal 0"), HasSubstr("'raise' has 6 words, here are 5"));
     EXPECT_THAT(refusal(""), HasSubstr("here are 1"));
 }
 

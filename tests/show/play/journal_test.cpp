@@ -26,6 +26,9 @@ std::vector<journal::Line> someLines() {
     held.controls.loaded = 5;
     held.controls.panic = held.controls.frozen = true;
     held.controls.master = 0.7f;
+    held.controls.sides = {{.cue = 2}, {.cue = -1, .loaded = 4}};
+    held.controls.raised = {{0, 0.3f}, {12, 1}};
+    held.controls.switched = {{1, true}, {3, false}};
     return {journal::Run{0s, 1'700'000'000s, false, 0xfedcba9876543210u, "/srv/a show/show.yaml"},
             Input{.at = 0s, .kind = Input::Kind::Jump, .cue = 2},
             corrected,

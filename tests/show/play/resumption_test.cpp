@@ -24,6 +24,7 @@ CueList fourCues() {
     }
     list.cues[0].follow = 5s;
     list.dark = {{{}}, {0.f}, {1}};
+    list.fixtures = {{0, 1}};
     list.goInterval = 300ms;
     list.blackoutFade = 500ms;
     list.panicFade = 1s;
@@ -89,11 +90,13 @@ struct GoneOn {
 };
 
 Input anyInput(Rng& rng, Time at) {
-    constexpr Kind kKinds[] = {Kind::Go,       Kind::Go,     Kind::Back,  Kind::Jump,       Kind::Load,
-                               Kind::Blackout, Kind::Pause,  Kind::Panic, Kind::Freeze,     Kind::Light,
-                               Kind::Restore,  Kind::Master, Kind::Lock,  Kind::Corrections};
+    constexpr Kind kKinds[] = {Kind::Go,    Kind::Go,          Kind::Back,   Kind::Jump,   Kind::Load,    Kind::Blackout,
+                               Kind::Pause, Kind::Panic,       Kind::Freeze, Kind::Light,  Kind::Restore, Kind::Master,
+                               Kind::Lock,  Kind::Corrections, Kind::Raise,  Kind::Switch, Kind::Switch,  Kind::Release};
     Input input{.at = at, .kind = kKinds[rng.below(std::size(kKinds))], .cue = static_cast<int>(rng.below(4))};
     input.level = static_cast<float>(rng.below(5)) / 4;
+    input.fixture = input.relay = 0;
+    input.on = rng.below(2) == 0;
     return input;
 }
 
