@@ -19,6 +19,17 @@ float stepped(float level, int steps) {
     return std::clamp((std::round(level * kTenths) + static_cast<float>(steps)) / kTenths, 0.0f, 1.0f);
 }
 
+// The kind of input that a key gives which needs nothing else.
+Kind kindOf(RunKey::Action action) {
+    using Action = RunKey::Action;
+    constexpr std::pair<Action, Kind> kKinds[] = {
+        {Action::Go, Kind::Go},          {Action::Back, Kind::Back},       {Action::Blackout, Kind::Blackout},
+        {Action::Pause, Kind::Pause},    {Action::Freeze, Kind::Freeze},   {Action::Panic, Kind::Panic},
+        {Action::Lock, Kind::Lock},      {Action::Restore, Kind::Restore}, {Action::Corrections, Kind::Corrections},
+        {Action::Release, Kind::Release}};
+    return std::ranges::find(kKinds, action, &std::pair<Action, Kind>::first)->second;
+}
+
 }  // namespace
 
 OperatorKeys::OperatorKeys(show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock,
@@ -51,34 +62,29 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
     if (!action) return;
     using Action = RunKey::Action;
     show::Input input{.at = showClock_.showTime(moment), .source = source, .late = lateness_.isLate(moment)};
-    const auto take = [&](Kind kind) {
-        input.kind = kind;
-        takeOver(input);
-    };
-    const auto enter = [&](Kind kind) {
-        input.list = list_;
-        take(kind);
-    };
     switch (*action) {
         case Action::Go:
-            return enter(Kind::Go);
         case Action::Back:
-            return enter(Kind::Back);
+            input.list = list_;
+            [[fallthrough]];
+        case Action::Blackout:
+        case Action::Pause:
+        case Action::Freeze:
+        case Action::Panic:
+        case Action::Restore:
+            input.kind = kindOf(*action);
+            return takeOver(input);
+        case Action::Corrections:
+        case Action::Lock:
+        case Action::Release:
+            input.kind = kindOf(*action);
+            inputs_.submit(input);
+            return;
         case Action::LoadPrevious:
         case Action::LoadNext:
             return load(input, *action == Action::LoadNext ? 1 : -1);
         case Action::NextList:
             return chooseList(input.at);
-        case Action::Blackout:
-            return take(Kind::Blackout);
-        case Action::Pause:
-            return take(Kind::Pause);
-        case Action::Freeze:
-            return take(Kind::Freeze);
-        case Action::Panic:
-            return take(Kind::Panic);
-        case Action::Restore:
-            return take(Kind::Restore);
         case Action::Dimmer:
         case Action::Brighter:
             return dim(input, *action == Action::Brighter ? 1 : -1);
@@ -93,15 +99,6 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
             return chooseRelay(input.at);
         case Action::SwitchRelay:
             return switchRelay(input);
-        case Action::Release:
-            input.kind = Kind::Release;
-            inputs_.submit(input);
-            return;
-        case Action::Corrections:
-        case Action::Lock:
-            input.kind = *action == Action::Lock ? Kind::Lock : Kind::Corrections;
-            inputs_.submit(input);
-            return;
         case Action::Pictures:
             return actions_.takePictures();
         case Action::Keys:
