@@ -13,7 +13,7 @@
 // same rate and rank.
 
 #include "app/live/frame_loop.h"
-#include "app/live/part.h"
+#include "app/parts/part.h"
 
 #include "core/file.h"
 #include "outputs.h"

@@ -2,7 +2,7 @@
 // The default show on the simulated default site, its devices open, on a clock that stands still:
 // what the tests of a run's parts need.
 
-#include "app/live/fault_log.h"
+#include "app/parts/fault_log.h"
 #include "app/site/devices.h"
 #include "drivers/site/world.h"
 

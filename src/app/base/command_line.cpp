@@ -39,6 +39,8 @@ Option Option::delimiter(char between) { return Option(option_->delimiter(betwee
 
 Option Option::noExtraArguments() { return Option(option_->allow_extra_args(false)); }
 
+Option Option::orNothing() { return Option(option_->expected(0, 1)); }
+
 Option Option::expected(int count) { return Option(option_->expected(count)); }
 
 Option Option::needs(Option other) { return Option(option_->needs(other.option_)); }

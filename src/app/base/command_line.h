@@ -39,6 +39,8 @@ public:
     Option range(std::uint64_t least, std::uint64_t most);
     Option positive();
     Option nonNegative();
+    // The option may stand without a text; then the text is empty. Only of addParsed().
+    Option orNothing();
     // Of lists:
     Option delimiter(char between);
     Option noExtraArguments();  // the argument after the list is no part of it

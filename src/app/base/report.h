@@ -13,8 +13,9 @@ namespace fantascope::app {
 // is written as null.
 using Report = nlohmann::ordered_json;
 
-// A report as text, and back: nlohmann-json's own functions are compiled once, in report.cpp. A
-// text that is no JSON gives a report that is_discarded().
+// A report as text, and back. What is no UTF-8, such as a name that a stranger sends, is replaced.
+// nlohmann-json's own functions are compiled once, in report.cpp. A text that is no JSON gives a
+// report that is_discarded().
 std::string jsonText(const Report& report);
 Report parseJson(const std::string& text);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/live/frame_loop.h"
-#include "app/live/part.h"
+#include "app/parts/part.h"
 #include "app/site/open_site.h"
 #include "app/site/site_claims.h"
 

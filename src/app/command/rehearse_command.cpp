@@ -14,12 +14,15 @@
 namespace fantascope::app {
 namespace {
 
+constexpr int kPagePort = 8080;
+
 struct Options {
     std::string show, site, fromCue, record, at;
     std::string pictures = RunOptions{}.pictures, journal;
     std::optional<double> length;  // seconds
     std::filesystem::path report;
     std::uint64_t seed = 1;
+    std::optional<web::Server::Options> page;
     bool window = false, asFastAsPossible = false, byHand = false;
 };
 
@@ -42,6 +45,19 @@ Result<void> runAndReport(const RunOptions& run) {
     return {};
 }
 
+// "localhost:8080", a part of it, or nothing. Returns why not, or "".
+std::string readPlaceOfPage(const std::string& text, web::Server::Options& place) {
+    const std::size_t colon = text.rfind(':');
+    const std::string address = colon == std::string::npos ? "localhost" : text.substr(0, colon);
+    const auto port =
+        text.empty() ? std::optional(kPagePort) : wholeNumber(colon == std::string::npos ? text : text.substr(colon + 1));
+    if (address != "localhost" && address != "127.0.0.1")
+        return fmt::format("'{}': the page is for this machine alone: write localhost:{}", text, kPagePort);
+    if (!port || *port < 0 || *port > 65535) return fmt::format("'{}' has no port: write localhost:{}", text, kPagePort);
+    place.port = *port;
+    return "";
+}
+
 void declareCommon(Command& command, Options& options) {
     command.add("--seconds", options.length, "end after this much show time").range(0.1, 1e6);
     command.add("--from", options.fromCue, "enter this cue at once, by its name or number");
@@ -49,6 +65,12 @@ void declareCommon(Command& command, Options& options) {
     command.add("--pictures", options.pictures, "folder for the pictures that the key s takes").showDefault();
     command.add("--journal", options.journal,
                 "write what is pressed and happens to this folder; a run that died goes on from there");
+    command
+        .addParsed(
+            "--console", [&](const std::string& text) { return readPlaceOfPage(text, options.page.emplace()); },
+            fmt::format("serve a page to operate the show, for a browser on this machine (default: localhost:{})", kPagePort))
+        .orNothing()
+        .typeName("[ADDRESS:PORT]");
     command.add("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
     command.footer(runKeysHelp());
 }
@@ -63,6 +85,7 @@ RunOptions commonOf(const Options& options) {
     run.pictures = options.pictures;
     run.report = options.report;
     run.journal = options.journal;
+    run.page = options.page;
     run.seed = options.seed;
     return run;
 }
@@ -86,6 +109,7 @@ Result<void> rehearse(const Options& options) {
     // The cues are spread over the length. A minute is how long a passer-by stays.
     if (!run.length && !options.byHand) run.length = std::chrono::seconds(60);
     if (!run.length && options.asFastAsPossible) return Error("--as-fast-as-possible needs an end: add --seconds T");
+    if (options.page && options.asFastAsPossible) return Error("--console needs real time: leave out --as-fast-as-possible");
     run.backends = options.window ? Backends::SimulatedWindows : Backends::SimulatedHeadless;
     run.asFastAsPossible = options.asFastAsPossible;
     run.handsOff = !options.byHand;

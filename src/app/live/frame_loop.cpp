@@ -1,7 +1,7 @@
 #include "app/live/frame_loop.h"
 
 #include "app/base/process_start.h"
-#include "app/live/part.h"
+#include "app/parts/part.h"
 #include "app/site/site_models.h"
 
 #include "render/gpu/handles.h"

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "app/live/fault_log.h"
 #include "app/live/frame_loop.h"
-#include "app/live/part.h"
 #include "app/live/recording.h"
 #include "app/live/run_report.h"
+#include "app/parts/fault_log.h"
+#include "app/parts/part.h"
 
 #include "render/frame_tap.h"
 #include "show/site/site.h"

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "app/base/durations.h"
-#include "app/live/fault_log.h"
-#include "app/live/part.h"
 #include "app/live/recording.h"
+#include "app/live/run_report.h"
+#include "app/parts/fault_log.h"
+#include "app/parts/part.h"
 #include "app/site/devices.h"
 #include "drivers/common/back_off.h"
 

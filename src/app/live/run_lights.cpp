@@ -1,6 +1,6 @@
 #include "app/live/run_lights.h"
 
-#include "app/live/supervisor.h"
+#include "app/parts/supervisor.h"
 
 #include "core/config/config.h"
 

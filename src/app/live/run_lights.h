@@ -1,9 +1,9 @@
 #pragma once
 
-#include "app/live/fault_log.h"
 #include "app/live/lighting.h"
-#include "app/live/part.h"
 #include "app/live/run_report.h"
+#include "app/parts/fault_log.h"
+#include "app/parts/part.h"
 #include "app/site/devices.h"
 #include "app/site/relay_guard.h"
 

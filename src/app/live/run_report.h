@@ -2,6 +2,7 @@
 
 #include "app/base/durations.h"
 #include "app/base/report.h"
+#include "app/parts/fault_log.h"
 #include "app/watch/drift_watch.h"
 #include "drivers/site/simulated_site.h"
 
@@ -56,13 +57,6 @@ struct CueReport {
 
 // What was told of the patterns, and when.
 using PatternNews = std::vector<std::pair<Time, show::event::PatternFitted>>;
-
-struct FaultReport {
-    Time at{};
-    std::string what;
-    std::string device{};         // by its name in the site file; empty: none
-    std::optional<Time> until{};  // none: it lasted to the end, or it was only a moment
-};
 
 // A relay bank that has not confirmed its safe states.
 struct UnsafeBank {

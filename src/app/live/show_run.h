@@ -8,6 +8,7 @@
 #include "show/schedule/night_time.h"
 
 #include "core/result.h"
+#include "web/server.h"
 
 #include <filesystem>
 #include <functional>
@@ -29,8 +30,9 @@ struct RunOptions {
     std::filesystem::path report;                            // a JSON file; empty: no report
     std::filesystem::path journal;                           // the folder of the nights' journals; empty: none is kept
     bool asFastAsPossible = false;                           // on a stepped clock: the same bytes every time. It needs a length
-    bool handsOff = false;   // the simulated controller presses GO by itself, evenly over the length
-    std::uint64_t seed = 1;  // of the simulated site's noise
+    std::optional<web::Server::Options> page;  // where the page of the run is; none: there is no page. Not on a stepped clock
+    bool handsOff = false;                     // the simulated controller presses GO by itself, evenly over the length
+    std::uint64_t seed = 1;                    // of the simulated site's noise
 };
 
 // Runs a show from its files to its report. It claims the site and its devices, opens the devices,

@@ -72,6 +72,7 @@ struct Teller {
     std::string operator()(const event::RelayChosen& chosen) const {
         return chosen.relay.empty() ? "there is no relay" : fmt::format("{} switches relay '{}'", chosen.key, chosen.relay);
     }
+    std::string operator()(const event::PageOpened& page) const { return "the page of this run is at " + page.address; }
     std::string operator()(const event::CueLoaded& loaded) const {
         if (loaded.cue < 0) return inList(loaded.list) + "GO enters the next cue";
         return fmt::format("{}GO enters cue {}: {}", inList(loaded.list), placeOf(loaded.number, loaded.cue, loaded.cues),

@@ -63,6 +63,10 @@ struct RelayChosen {
     std::string relay;  // empty: none
     std::string key;
 };
+// The page of the run is there.
+struct PageOpened {
+    std::string address;  // for a browser on this machine
+};
 // GO is to enter another cue than the one after the current.
 struct CueLoaded {
     int cue = -1;  // index into Show::cues, of `cues`; -1: the next one, as usual
@@ -204,12 +208,12 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What =
-    std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, LampHighlighted, LampParked, LampRaised, RelaySwitched,
-                 RelayChosen, CueLoaded, ListChosen, ShowResumed, ScheduleCalled, NextDayTold, ClockSet, ScheduleEnded, QuitAsked,
-                 KeysAsked, StateTold, FaultBegan, FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected,
-                 PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, ShowRevised,
-                 RevisionRefused, SiteChanged, SiteAdopted, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, LampHighlighted, LampParked, LampRaised,
+                          RelaySwitched, RelayChosen, PageOpened, CueLoaded, ListChosen, ShowResumed, ScheduleCalled, NextDayTold,
+                          ClockSet, ScheduleEnded, QuitAsked, KeysAsked, StateTold, FaultBegan, FaultEnded, SendersChanged,
+                          PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan,
+                          CauseEnded, PatternFitted, LampsTrimmed, ShowRevised, RevisionRefused, SiteChanged, SiteAdopted,
+                          SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -17,10 +17,10 @@ constexpr std::array<std::string_view, 25> kKinds = {
     "go",          "back", "jump",  "blackout", "dark",  "light",  "revise", "correct", "exchange",
     "corrections", "trim", "lock",  "load",     "pause", "freeze", "panic",  "restore", "master",
     "highlight",   "solo", "level", "park",     "raise", "switch", "release"};
-constexpr std::array<std::string_view, 9> kSources = {"start",    "controller", "contact", "terminal", "screen",
-                                                      "schedule", "camera",     "journal", "file"};
+constexpr std::array<std::string_view, 10> kSources = {"start",    "controller", "contact", "terminal", "screen",
+                                                       "schedule", "camera",     "journal", "file",     "page"};
 static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Release) + 1);
-static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::File) + 1);
+static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Page) + 1);
 
 constexpr std::string_view kList = "list", kLate = "late";
 

@@ -52,7 +52,8 @@ struct Input {
         Schedule,    // the show's schedule, or GO by that of a rehearsal without an operator
         Camera,      // what the camera sees; of Correct: on output `which`; of Exchange: of source `which`
         Journal,     // what an earlier run has left, where its journal is damaged
-        File         // a file of the show that was saved
+        File,        // a file of the show that was saved
+        Page         // the page that the program serves, or a script
     };
     Time at{};  // show time
     Kind kind = Kind::Go;

@@ -95,6 +95,10 @@ public:
     // The cue that follows then.
     std::optional<int> followerAt(Time time, int list = 0) const { return playerOf(list).followerAt(cueTime_.at(time)); }
 
+    // The time by which the cues go on. While something is frozen, ShowState::cueTime stands still, and
+    // this does not.
+    Time cueTimeAt(Time time) const { return cueTime_.at(time); }
+
     // Whether a source may be seen at `time` or later, unless the list is revised.
     bool needs(SourceId source, Time time) const;
 

@@ -1,6 +1,6 @@
 #include "app/command/device_trial.h"
 
-#include "app/live/part.h"
+#include "app/parts/part.h"
 #include "drivers/registry.h"
 #include "drivers/site/world.h"
 

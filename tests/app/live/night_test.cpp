@@ -1,12 +1,12 @@
 // A whole night on the stepped clock in which everything that can fail does so in turn, while the
 // rest plays on.
 
-#include "app/live/fault_log.h"
+#include "app/parts/fault_log.h"
 #include "app/live/frame_loop.h"
 #include "app/live/frame_recorder.h"
 #include "app/live/hand.h"
 #include "app/live/lighting.h"
-#include "app/live/part_guard.h"
+#include "app/parts/part_guard.h"
 #include "app/live/recording.h"
 #include "app/live/screenshots.h"
 #include "app/live/watch.h"

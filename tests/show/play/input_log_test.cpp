@@ -138,7 +138,7 @@ Input anyInput(Rng& rng, Time at) {
     const auto number = [&] { return static_cast<float>(rng.uniform(-1, 1)); };
     Input input{.at = at,
                 .kind = static_cast<Kind>(rng.below(static_cast<std::uint32_t>(Kind::Release) + 1)),
-                .source = static_cast<Input::Source>(rng.below(static_cast<std::uint32_t>(Input::Source::File) + 1)),
+                .source = static_cast<Input::Source>(rng.below(static_cast<std::uint32_t>(Input::Source::Page) + 1)),
                 .which = static_cast<int>(rng.below(300)),
                 .list = static_cast<int>(rng.below(3)) - 1,
                 .late = rng.below(2) == 0};

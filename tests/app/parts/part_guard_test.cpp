@@ -1,4 +1,4 @@
-#include "app/live/part_guard.h"
+#include "app/parts/part_guard.h"
 
 #include "app/running_show.h"
 

@@ -1,4 +1,4 @@
-#include "app/live/fault_log.h"
+#include "app/parts/fault_log.h"
 
 #include <fmt/format.h>
 

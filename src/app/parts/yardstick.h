@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/live/part.h"
+#include "app/parts/part.h"
 
 #include "core/clock.h"
 

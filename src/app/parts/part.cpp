@@ -1,4 +1,4 @@
-#include "app/live/part.h"
+#include "app/parts/part.h"
 
 #include "core/check.h"
 

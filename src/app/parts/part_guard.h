@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/live/fault_log.h"
-#include "app/live/part.h"
+#include "app/parts/fault_log.h"
+#include "app/parts/part.h"
 #include "drivers/common/back_off.h"
 
 #include "core/clock.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "app/live/run_report.h"
-
 #include "show/play/event.h"
 #include "show/play/show_clock.h"
 
@@ -19,6 +17,13 @@
 #include <vector>
 
 namespace fantascope::app {
+
+struct FaultReport {
+    Time at{};
+    std::string what;
+    std::string device{};         // by its name in the site file; empty: none
+    std::optional<Time> until{};  // none: it lasted to the end, or it was only a moment
+};
 
 // The faults of a run. Each fault becomes an event once, and is kept for the report. A device has
 // at most one fault of a topic at a time. Calls give moments on the machine's clock, because a

@@ -1,6 +1,6 @@
-#include "app/live/supervisor.h"
+#include "app/parts/supervisor.h"
 
-#include "app/live/part.h"
+#include "app/parts/part.h"
 
 #include <fmt/format.h>
 #include <poll.h>

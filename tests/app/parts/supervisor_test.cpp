@@ -1,4 +1,4 @@
-#include "app/live/supervisor.h"
+#include "app/parts/supervisor.h"
 
 #include "core/clock.h"
 
