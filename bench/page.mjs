@@ -28,7 +28,6 @@ version: 1
 outputs:
   - {name: left, display: {driver: headless}, size: [320, 180], refresh_rate: ${kRate}}
   - {name: right, display: {driver: headless}, size: [320, 180], refresh_rate: ${kRate}}
-cue_controller: {device: {driver: simulated}, buttons: {go: 1}}
 `;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const percentile = (sorted, share) => sorted[Math.floor(share * (sorted.length - 1))];
@@ -49,8 +48,10 @@ async function measure(pages) {
     {cwd: folder, stdio: ['ignore', 'ignore', 'pipe']});
   let said = '';
   run.stderr.on('data', (text) => { said += text; });
-  const ended = new Promise((done) => run.on('close', done));
-  while (!/http:\/\/localhost:(\d+)/.test(said)) await sleep(20);
+  let isOver = false;
+  const ended = new Promise((done) => run.on('close', () => { isOver = true; done(); }));
+  while (!isOver && !/http:\/\/localhost:(\d+)/.test(said)) await sleep(20);
+  if (isOver) throw new Error(`it does not begin: ${said}`);
   const port = Number(/http:\/\/localhost:(\d+)/.exec(said)[1]);
   const agent = new http.Agent({keepAlive: true, maxSockets: 1});
   const post = (body) => new Promise((done, failed) => {

@@ -150,8 +150,7 @@ function draw() {
   drawLists();
   const holds = Object.entries(kHolds).filter(([hold]) => state.holds[hold]).map(([, text]) => text);
   if (state.highlight) holds.push(`${state.highlight.solo ? 'SOLO' : 'HIGHLIGHT'} ${state.highlight.lamp}`);
-  if (state.master < 1) holds.push(`MASTER ${Math.round(state.master * 100)} %`);
-  $('holds').replaceChildren(...holds.map(item));
+  if (state.master < 1) holds.push(`MASTER ${percent(state.master)}`);
   fill('now-number', here.cue ? here.cue.number : '');
   fill('now-name', here.cue ? here.cue.name : 'no cue yet');
   fill('now-does', here.cue ? here.cue.does : '');
@@ -165,16 +164,18 @@ function draw() {
   fill('panic', state.holds.panic ? 'Restore' : 'Panic');
   fill('lock', state.holds.lock ? 'Unlock' : 'Lock');
   if (document.activeElement !== $('master')) $('master').value = Math.round(state.master * 100);
-  fill('master-level', `${Math.round(state.master * 100)} %`);
-  const held = [...state.parked.map((lamp) => `${lamp} is parked`), ...state.raised.map((one) => `${one.lamp} at least ${Math.round(one.level * 100)} %`),
-    ...state.switched.map((one) => `${one.relay} ${one.on ? 'on' : 'off'}`)];
-  $('hand').replaceChildren(...held.map(item));
+  fill('master-level', percent(state.master));
+  for (const one of state.raised) holds.push(`${one.lamp} at least ${percent(one.level)} by hand`);
+  for (const one of state.switched) holds.push(`${one.relay} ${one.on ? 'on' : 'off'} by hand`);
+  $('holds').replaceChildren(...holds.map(item));
+  fill('parked', state.parked.length ? `Parked: ${state.parked.join(', ')}` : '');
   const {unwell, late} = state.health;
-  fill('unwell-title', (unwell.length ? `NOT WELL: ${unwell.length}` : 'All is well') + (late ? `, ${late} late frames` : ''));
+  fill('unwell-title', (unwell.length ? `NOT WELL: ${unwell.length}` : 'All is well') + (late ? `, ${late} late ${late === 1 ? 'frame' : 'frames'}` : ''));
   $('unwell').replaceChildren(...unwell.map((one) => item(one.what)));
   markCues(here);
   countDown();
 }
+const percent = (level) => `${Math.round(level * 100)} %`;
 function item(text) {
   const element = document.createElement('li');
   element.textContent = text;
@@ -225,6 +226,48 @@ function markCues(here) {
     followed = now;
   }
 }
+
+// Lamps and relays are asked for only while somebody looks at them. A slider that is held is left alone.
+let rows = '';
+async function drawLights() {
+  if (!clock || !$('more').open) return;
+  let lights;
+  try { lights = await (await fetch('/api/v1/lights')).json(); } catch { return; }
+  const names = JSON.stringify([lights.lamps, lights.relays].map((things) => things.map((one) => one.name)));
+  if (names !== rows) {
+    rows = names;
+    $('lamps').replaceChildren(...lights.lamps.map(lampRow));
+    $('relays').replaceChildren(...lights.relays.map(relayRow));
+  }
+  lights.lamps.forEach((lamp, index) => {
+    const [label, slider] = $('lamps').children[index].children;
+    label.textContent = `${lamp.name}: ${lamp.levels.map(percent).join(' ')}`;
+    if (document.activeElement !== slider) slider.value = Math.round(lamp.raised * 100);
+  });
+  lights.relays.forEach((relay, index) => {
+    const button = $('relays').children[index].firstChild;
+    button.textContent = `${relay.name}: ${relay.on ? 'on' : 'off'}${relay.by_hand ? ' by hand' : ''}`;
+    button.setAttribute('aria-pressed', relay.on);
+  });
+}
+function lampRow(lamp, index) {
+  const row = document.createElement('li'), label = document.createElement('label'), slider = document.createElement('input');
+  label.htmlFor = slider.id = `lamp-${index}`;
+  Object.assign(slider, {type: 'range', min: 0, max: 100, step: 5});
+  slider.setAttribute('aria-label', `${lamp.name} by hand, at least`);
+  slider.onchange = async () => { await press({do: 'raise', lamp: lamp.name, level: Number(slider.value) / 100}); drawLights(); };
+  row.append(label, slider);
+  return row;
+}
+function relayRow(relay) {
+  const row = document.createElement('li'), button = document.createElement('button');
+  button.type = 'button';
+  button.onclick = async () => { await press({do: 'switch', relay: relay.name, on: button.getAttribute('aria-pressed') !== 'true'}); drawLights(); };
+  row.append(button);
+  return row;
+}
+$('more').addEventListener('toggle', drawLights);
+setInterval(drawLights, 1000);
 
 // Everything that counts down does so here, without asking.
 function countDown() {

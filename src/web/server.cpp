@@ -161,11 +161,11 @@ private:
             const unsigned version = message.version() == 10 ? 10 : 11;
             goesOn = !refused && message.keep_alive();
             Response response = refused ? Response::of(*refused, "text/plain", "") : answer(message, peer, isLocal);
-            if (!response.channel.empty()) {
+            const bool isHead = !refused && message.method() == http::verb::head;
+            if (!response.channel.empty() && !isHead) {
                 co_await push(stream, response);
                 break;
             }
-            const bool isHead = !refused && message.method() == http::verb::head;
             stream.expires_after(options_.patience);
             if (!co_await write(stream, response, version, goesOn, isHead)) break;
         }

@@ -225,6 +225,22 @@ test('pause, freeze, back, master and another list', async () => {
   await close(page);
 });
 
+test('a lamp is raised and a relay switched by hand, and both are released', async () => {
+  const page = await open();
+  await page.getByText('Master, lamps and relays, lock').click();
+  await page.getByText('gate: 40 %').waitFor();
+  await counts(page, () => page.getByLabel('bar by hand').fill('90'));
+  await shows(page, 'holds', 'bar at least 90 % by hand');
+  await page.getByText('bar: 90 %').waitFor();
+  await counts(page, () => page.getByRole('button', {name: 'fog: off'}).click());
+  await page.getByRole('button', {name: 'fog: on by hand'}).waitFor();
+  await picture(page, 'lamps');
+  await counts(page, () => page.getByRole('button', {name: 'Release'}).click());
+  await page.getByRole('button', {name: 'fog: off'}).waitFor();
+  assert.deepEqual((await run.state()).raised, []);
+  await close(page);
+});
+
 test('two phones and a laptop see the same', async () => {
   const pages = [await open(kPhone), await open(kPhone), await open(kLaptop)];
   await go(pages[1]);

@@ -80,6 +80,7 @@ web::Response Console::answerForApi(const web::Request& request) {
     if (request.path == "/api/v1/inputs") return only(request.method == "POST", [&] { return press(request); });
     if (request.path == "/api/v1/state") return only(reads, [&] { return json(200, at(run_.clock.now())); });
     if (request.path == "/api/v1/cues") return only(reads, [&] { return json(200, cuesJson(run_.show.newest())); });
+    if (request.path == "/api/v1/lights") return only(reads, [&] { return json(200, lights()); });
     if (request.path == "/api/v1/news") return only(reads, [&] { return news(request); });
     if (request.path == "/api/v1/events")
         return only(reads, [&] {
@@ -133,6 +134,12 @@ Report Console::at(Time moment) {
     state["health"] = health_;
     state["news"] = newsCount_;
     return {{"clock", clockJson(state_, replica_.playback())}, {"state", std::move(state)}};
+}
+
+Report Console::lights() {
+    const std::lock_guard lock(mutex_);
+    replica_.stateAt(run_.showClock.showTime(run_.clock.now()), state_);
+    return lightsJson(state_, run_.show.at(state_.revision));
 }
 
 void Console::tick(Time moment) {

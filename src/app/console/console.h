@@ -65,6 +65,7 @@ private:
     web::Response press(const web::Request& request);
     web::Response news(const web::Request& request);
     Report at(Time moment);  // the clock and the state
+    Report lights();
 
     const Run run_;
     const Files files_;

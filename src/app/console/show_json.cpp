@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <variant>
 
 namespace fantascope::app {
@@ -112,6 +113,26 @@ Report stateJson(const show::ShowState& state, const show::Playback& playback, c
     for (const auto& [relay, on] : state.switched)
         json["switched"].push_back({{"relay", site.relays[static_cast<std::size_t>(relay)].name}, {"on", on}});
     return json;
+}
+
+Report lightsJson(const show::ShowState& state, const show::Revision& revision) {
+    Report lamps = Report::array(), relays = Report::array();
+    for (std::size_t i = 0; i < revision.site.fixtures.size(); ++i) {
+        const auto [first, count] = revision.cues.fixtures[i];
+        const auto raised = std::ranges::find(state.raised, static_cast<int>(i), &show::RaisedLamp::fixture);
+        Report levels = Report::array();
+        for (const float level : std::span(state.levels).subspan(first, count)) levels.push_back(level);
+        lamps.push_back({{"name", revision.site.fixtures[i].name},
+                         {"levels", std::move(levels)},
+                         {"raised", raised == state.raised.end() ? 0.0f : raised->level}});
+    }
+    for (std::size_t i = 0; i < revision.site.relays.size(); ++i) {
+        const auto switched = std::ranges::find(state.switched, static_cast<int>(i), &show::SwitchedRelay::relay);
+        relays.push_back({{"name", revision.site.relays[i].name},
+                          {"on", state.relays[i] != 0},
+                          {"by_hand", switched != state.switched.end()}});
+    }
+    return {{"lamps", std::move(lamps)}, {"relays", std::move(relays)}};
 }
 
 Report clockJson(const show::ShowState& state, const show::Playback& playback) {

@@ -19,6 +19,9 @@ Report cuesJson(const show::Revision& revision);
 // that `state` has.
 Report stateJson(const show::ShowState& state, const show::Playback& playback, const show::Revision& revision);
 
+// What the lamps and relays do at a moment, and what a person holds of them.
+Report lightsJson(const show::ShowState& state, const show::Revision& revision);
+
 // What a page counts by: show time and cue time of a moment, seconds, and whether cue time goes on.
 Report clockJson(const show::ShowState& state, const show::Playback& playback);
 
