@@ -25,7 +25,7 @@ public:
         std::string address = "127.0.0.1";
         int port = 0;  // 0: any that is free
         // Bounds, beyond which a client is refused.
-        std::size_t connections = 512, connectionsOfOne = 64;  // at once, of all and of one address
+        std::size_t connections = 512, connectionsOfOne = 256;  // at once, of all and of one address
         std::size_t headerBytes = 8192, bodyBytes = 65536;
         Time patience = std::chrono::seconds(10);   // for a whole request, and for a write
         Time keepAlive = std::chrono::seconds(10);  // a stream without events says so often that it lives

@@ -53,7 +53,7 @@ public:
 
     // Tells all pages what has changed.
     void tick(Time moment);
-    // "http://127.0.0.1:8080/"
+    // "http://localhost:8080/"
     std::string address() const;
 
 private:

@@ -36,6 +36,7 @@ OperatorKeys::OperatorKeys(show::InputLog& inputs, show::EventLog& events, const
                            std::unique_ptr<TerminalKeys> terminal, GoSchedule schedule, QuitKey quitKey, Actions actions)
     : inputs_(inputs),
       replica_(inputs),
+      others_(inputs.reader()),
       events_(events),
       showClock_(showClock),
       terminal_(std::move(terminal)),
@@ -49,6 +50,8 @@ void OperatorKeys::tick(Time moment) {
         if (const auto key = parser_.take(*character)) press(*key, Source::Terminal, moment);
     if (const auto key = parser_.pause(moment)) press(*key, Source::Terminal, moment);
     while (const Press* const pressed = pressedAtScreens_.next()) press(pressed->key, Source::Screen, pressed->moment);
+    while (const show::LoggedInput* const logged = others_.next())
+        if (logged->input.source == Source::Page) endSchedule(logged->input.at);
     // After a gap its press would be late: the next tick presses.
     if (!lateness_.isLate(moment) && schedule_.due(showClock_.runTime(moment)) && !actions_.pressGo())
         inputs_.submit({.at = showClock_.showTime(moment), .kind = Kind::Go, .source = Source::Schedule});
@@ -182,9 +185,13 @@ void OperatorKeys::dim(show::Input input, int step) {
 }
 
 void OperatorKeys::takeOver(const show::Input& input) {
-    if (!schedule_.ended()) events_.append({input.at, show::event::ScheduleEnded{}});
-    schedule_.end();
+    endSchedule(input.at);
     inputs_.submit(input);
+}
+
+void OperatorKeys::endSchedule(Time at) {
+    if (!schedule_.ended()) events_.append({at, show::event::ScheduleEnded{}});
+    schedule_.end();
 }
 
 }  // namespace fantascope::app

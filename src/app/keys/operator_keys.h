@@ -25,7 +25,7 @@
 namespace fantascope::app {
 
 // The keys that control a running show, at the terminal and at the displays' windows; and the
-// schedule that presses GO until a person takes over.
+// schedule that presses GO until a person takes over, by a key or at the page.
 // Thread: the input thread, except where a function says otherwise.
 class OperatorKeys {
 public:
@@ -61,6 +61,7 @@ private:
     };
     void press(const Key& key, show::Input::Source source, Time moment);
     void takeOver(const show::Input& input);
+    void endSchedule(Time at);
     void load(show::Input input, int step);
     void chooseList(Time at);
     void tellAll(Time at);
@@ -72,6 +73,7 @@ private:
     show::InputLog& inputs_;
     show::PlaybackReplica replica_;
     show::ShowState state_;
+    show::InputLog::Reader others_;  // for what somebody asks at the page
     show::EventLog& events_;
     const show::ShowClock showClock_;
     std::unique_ptr<TerminalKeys> terminal_;

@@ -131,6 +131,17 @@ TEST_F(Keys, go_to_the_list_that_was_chosen) {
     EXPECT_EQ(run_.told().back(), "GO, back and load are now for the show's own cues");
 }
 
+// Example failure: a rehearsal presses GO while somebody steps it at the page.
+TEST_F(Keys, end_the_schedule_when_somebody_presses_at_the_page) {
+    const auto keys = keysWith({3, false, 60s});
+    keys->tick(12s);
+    ASSERT_NE(keys->nextGo(), Time::max());
+    run_.inputs.submit({.at = 12s, .kind = Kind::Blackout, .source = Source::Page});
+    keys->tick(12s + 10ms);
+    EXPECT_EQ(keys->nextGo(), Time::max());
+    EXPECT_EQ(run_.told().back(), "you have the controller");
+}
+
 TEST_F(Keys, highlight_one_lamp_after_the_other) {
     const auto keys = keysWith({0, false, {}});
     const auto pressed = [&](char letter) { return inputAfter(letter, *keys); };
