@@ -25,8 +25,8 @@ function connect() {
   events.onerror = lose;
 }
 function lose() {
-  if (events) events.close();
   if (!events) return;
+  events.close();
   events = null;
   clock = null;
   draw();
@@ -34,15 +34,15 @@ function lose() {
 }
 setInterval(() => { if (events && state && performance.now() - heard > kSilence) lose(); }, 1000);
 for (const [what, where] of [['online', window], ['pageshow', window], ['visibilitychange', document]])
-  where.addEventListener(what, () => { if (document.visibilityState === 'visible' && performance.now() - heard > 6000) connect(); });
+  where.addEventListener(what, () => { if (document.visibilityState === 'visible' && performance.now() - heard > kSilence) connect(); });
 
 function take(moment) {
   const now = performance.now() / 1000, before = clock;
   state = moment.state;
   clock = {...moment.clock, heard: now};
-  // An event that came late must not make presses look young: the earliest one counts.
-  if (before) clock.ahead = Math.max(before.ahead - 0.001, clock.show - now);
-  else clock.ahead = clock.show - now;
+  // How far show time is ahead of the page's own. An event that came late makes this too small, and presses look
+  // older than they are. So the largest counts, less a little for clocks that drift.
+  clock.ahead = before ? Math.max(before.ahead - 0.001, clock.show - now) : clock.show - now;
   if (!state.lists.some((one) => one.name === list)) list = '';
   if (state.revision !== cuesOf) loadCues(state.revision);
   if (state.news !== newsShown) loadNews(state.news);
@@ -279,7 +279,7 @@ function countDown() {
   const waits = left(here.waits_until), fades = left(here.fades_until), follows = left(here.follows_at);
   fill('fade-left', waits ? `begins in ${duration(waits)}` : fades ? `fading ${duration(fades)}` : '');
   $('fade').hidden = !fades || waits > 0;
-  if (fades && String(here.fades_until) !== $("fade").dataset.until) { $('fade').dataset.until = here.fades_until; $('fade').max = fades; }
+  if (fades && String(here.fades_until) !== $('fade').dataset.until) { $('fade').dataset.until = here.fades_until; $('fade').max = fades; }
   if (fades) $('fade').value = $('fade').max - fades;
   fill('follow', follows && here.follower ? `${here.follower.name} follows by itself in ${duration(follows)}` : '');
 }

@@ -15,9 +15,8 @@ struct Request {
     std::string path{};    // "/api/v1/state": decoded, without the query
     std::vector<std::pair<std::string, std::string>> query{};
     std::string body{};
-    std::string contentType{}, host{}, origin{}, cookie{}, authorization{}, fetchSite{}, ifNoneMatch{};  // empty: not sent
-    std::string peer{};    // the address it comes from
-    bool isLocal = false;  // ... is this machine's own
+    std::string contentType{}, host{}, origin{}, fetchSite{};  // header fields; empty: not sent
+    bool isLocal = false;                                      // it comes from this machine
 
     // The value of a part of the query; empty: it is not there.
     std::string_view part(std::string_view name) const {

@@ -23,7 +23,7 @@
 #include <optional>
 #include <set>
 #include <thread>
-#include <utility>  // before Boost.Asio, which needs it and does not say so
+#include <utility>
 #include <vector>
 
 namespace fantascope::web {
@@ -39,7 +39,7 @@ namespace {
 
 using Event = std::shared_ptr<const std::string>;
 
-// The newest event of a channel, and who waits for the next one.
+// The newest event of a channel, and how many there were.
 struct Channel {
     Event newest;  // as it is sent; null: there is none yet
     std::uint64_t count = 0;
@@ -59,17 +59,16 @@ std::string framed(std::string_view event) {
 const Event kAlive = std::make_shared<const std::string>("event: alive\ndata: .\n\n");  // says nothing more
 
 // Counts something as long as it lives.
+template <class Count>
 class Counted {
 public:
-    explicit Counted(auto&... counts) : counts_{[&counts] { --counts; }...} { (++counts, ...); }
-    ~Counted() {
-        for (const auto& down : counts_) down();
-    }
+    explicit Counted(Count& count) : count_(count) { ++count_; }
+    ~Counted() { --count_; }
     Counted(const Counted&) = delete;
     Counted& operator=(const Counted&) = delete;
 
 private:
-    std::vector<std::function<void()>> counts_;
+    Count& count_;
 };
 
 std::string textOf(beast::string_view text) { return std::string(text.data(), text.size()); }
@@ -144,9 +143,10 @@ private:
         }
     }
 
-    // Serves one connection until it ends. `counted`: lets it count as long as it lasts.
+    // Serves one connection until it ends.
     asio::awaitable<void> serve(beast::tcp_stream stream, std::string peer, bool isLocal) {
-        const Counted counted(connections_, ofOne_[peer]);
+        const Counted counted(connections_);
+        const Counted ofThisOne(ofOne_[peer]);
         beast::flat_buffer buffer;
         for (bool goesOn = true; goesOn;) {
             http::request_parser<http::string_body> parser;
@@ -160,7 +160,7 @@ private:
             const auto& message = parser.get();
             const unsigned version = message.version() == 10 ? 10 : 11;
             goesOn = !refused && message.keep_alive();
-            Response response = refused ? Response::of(*refused, "text/plain", "") : answer(message, peer, isLocal);
+            Response response = refused ? Response::of(*refused, "text/plain", "") : answer(message, isLocal);
             const bool isHead = !refused && message.method() == http::verb::head;
             if (!response.channel.empty() && !isHead) {
                 co_await push(stream, response);
@@ -182,7 +182,7 @@ private:
         return 400;
     }
 
-    Response answer(const http::request<http::string_body>& message, const std::string& peer, bool isLocal) {
+    Response answer(const http::request<http::string_body>& message, bool isLocal) {
         Request request;
         request.method = textOf(message.method_string());
         const auto target = splitTarget(std::string_view(message.target().data(), message.target().size()));
@@ -194,11 +194,7 @@ private:
         request.contentType = field(http::field::content_type);
         request.host = field(http::field::host);
         request.origin = field(http::field::origin);
-        request.cookie = field(http::field::cookie);
-        request.authorization = field(http::field::authorization);
         request.fetchSite = textOf(message["Sec-Fetch-Site"]);
-        request.ifNoneMatch = field(http::field::if_none_match);
-        request.peer = peer;
         request.isLocal = isLocal;
         return handler_(request);
     }
@@ -267,7 +263,7 @@ private:
     int port_ = 0;
     std::atomic<std::size_t> connections_ = 0, listeners_ = 0;
     std::map<std::string, std::size_t> ofOne_;  // connections of each address
-    std::set<asio::steady_timer*> waiting_;     // of the streams that have sent everything
+    std::set<asio::steady_timer*> waiting_;     // a timer of each stream
     std::mutex mutex_;                          // of:
     std::map<std::string, Channel> channels_;
     asio::io_context io_{1};  // after all that its connections use

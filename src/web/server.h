@@ -27,8 +27,8 @@ public:
         // Bounds, beyond which a client is refused.
         std::size_t connections = 512, connectionsOfOne = 256;  // at once, of all and of one address
         std::size_t headerBytes = 8192, bodyBytes = 65536;
-        Time patience = std::chrono::seconds(10);   // for a whole request, and for a write
-        Time keepAlive = std::chrono::seconds(10);  // a stream without events says so often that it lives
+        Time patience = std::chrono::seconds(10);  // for a whole request, and for a write
+        Time keepAlive = std::chrono::seconds(5);  // a stream without events says so often that it lives
     };
     // Answers a request. It must not wait.
     using Handler = std::function<Response(const Request&)>;

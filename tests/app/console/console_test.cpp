@@ -4,6 +4,7 @@
 
 #include "app/running_show.h"
 
+#include "program.h"
 #include "source_folder.h"
 #include "web/client.h"
 
@@ -236,6 +237,24 @@ TEST_F(Page, is_as_its_openapi_file_says) {
         EXPECT_EQ(listed.erase(known.substr(0, comma)), 1u) << known;
     }
     EXPECT_THAT(listed, IsEmpty());
+}
+
+// Example failure: a page that was to be on another machine is at 127.0.0.1, and nobody is told.
+TEST(PlaceOfThePage, that_it_cannot_have_is_refused_with_what_to_write) {
+    const ScratchFolder folder;
+    const auto refusal = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"rehearse"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome outcome = runProgram(words, folder.path());
+        EXPECT_NE(outcome.status, 0);
+        return outcome.errors;
+    };
+    EXPECT_THAT(refusal({"--console", "0.0.0.0:8080"}), HasSubstr("for this machine alone: write localhost:8080"));
+    EXPECT_THAT(refusal({"--console", "wall.example:8080"}), HasSubstr("for this machine alone"));
+    EXPECT_THAT(refusal({"--console", "localhost:99999"}), HasSubstr("has no port: write localhost:8080"));
+    EXPECT_THAT(refusal({"--console", "localhost:"}), HasSubstr("has no port"));
+    EXPECT_THAT(refusal({"--console", "shows"}), HasSubstr("has no port"));
+    EXPECT_THAT(refusal({"--as-fast-as-possible", "--console"}), HasSubstr("--console needs real time"));
 }
 
 }  // namespace
