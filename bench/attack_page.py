@@ -20,21 +20,7 @@ import threading
 import time
 from pathlib import Path
 
-SHOW = """fantascope: show
-version: 2
-title: Red and blue
-go_interval: 0
-at_end: loop
-sources: {red: {solid: [1, 0, 0]}, blue: {solid: [0, 0, 1]}}
-looks: {red: {outputs: {left: [{source: red}], right: [{source: red}]}}, blue: {outputs: {left: [{source: blue}], right: [{source: blue}]}}}
-cues: [{name: Red, look: red, fade: 0}, {name: Blue, look: blue, fade: 0}]
-"""
-SITE = """fantascope: site
-version: 1
-outputs:
-  - {name: left, display: {driver: headless}, size: [320, 180], refresh_rate: 30}
-  - {name: right, display: {driver: headless}, size: [320, 180], refresh_rate: 30}
-"""
+SHOW = str(Path(__file__).resolve().parent / "red-and-blue")
 GO = b'{"do": "go"}'
 
 
@@ -140,10 +126,8 @@ class Attack:
 
 def attack(program, kind, seconds):
     with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "show.yaml").write_text(SHOW)
-        Path(folder, "site.yaml").write_text(SITE)
         run = subprocess.Popen(
-            [program, "run", ".", "--site", ".", "--report", "report.json", "--console", "localhost:0"],
+            [program, "run", SHOW, "--site", SHOW, "--report", "report.json", "--console", "localhost:0"],
             cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         said, found = "", None
         while not found:

@@ -7,28 +7,15 @@
 // at all.
 
 import {spawn} from 'node:child_process';
-import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import http from 'node:http';
 import {tmpdir} from 'node:os';
-import {join, resolve} from 'node:path';
+import {dirname, join, resolve} from 'node:path';
+import {fileURLToPath} from 'node:url';
 
 const [program, presses = '150', listeners = '50'] = process.argv.slice(2);
-const kRate = 30, kClockTicks = 100;
-const kShow = `fantascope: show
-version: 2
-title: Red and blue
-go_interval: 0
-at_end: loop
-sources: {red: {solid: [1, 0, 0]}, blue: {solid: [0, 0, 1]}}
-looks: {red: {outputs: {left: [{source: red}], right: [{source: red}]}}, blue: {outputs: {left: [{source: blue}], right: [{source: blue}]}}}
-cues: [{name: Red, look: red, fade: 0}, {name: Blue, look: blue, fade: 0}]
-`;
-const kSite = `fantascope: site
-version: 1
-outputs:
-  - {name: left, display: {driver: headless}, size: [320, 180], refresh_rate: ${kRate}}
-  - {name: right, display: {driver: headless}, size: [320, 180], refresh_rate: ${kRate}}
-`;
+const kRate = 30, kClockTicks = 100;  // Hz; a second of /proc
+const show = join(dirname(fileURLToPath(import.meta.url)), 'red-and-blue');
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const percentile = (sorted, share) => sorted[Math.floor(share * (sorted.length - 1))];
 function print(what, milliseconds) {
@@ -42,9 +29,7 @@ function cpuOf(pid) {
 
 async function measure(pages) {
   const folder = mkdtempSync(join(tmpdir(), 'page-bench-'));
-  writeFileSync(join(folder, 'show.yaml'), kShow);
-  writeFileSync(join(folder, 'site.yaml'), kSite);
-  const run = spawn(resolve(program), ['run', '.', '--site', '.', '--journal', '.', '--record', 'seen', '--report', 'report.json', '--console', 'localhost:0'],
+  const run = spawn(resolve(program), ['run', show, '--site', show, '--journal', '.', '--record', 'seen', '--report', 'report.json', '--console', 'localhost:0'],
     {cwd: folder, stdio: ['ignore', 'ignore', 'pipe']});
   let said = '';
   run.stderr.on('data', (text) => { said += text; });
